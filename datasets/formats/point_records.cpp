@@ -125,8 +125,19 @@ std::vector<Wanted> values_of(const CloudHead& head, const CloudField& field,
   return values;
 }
 
-constexpr std::array<std::string_view, 6> kTimeFieldNames = {
-    "t", "time", "timestamp", "offset_time", "time_stamp", "time_offset"};
+constexpr std::array<std::string_view, 4> kUsualTimeFields = {"t", "time", "timestamp",
+                                                              "offset_time"};
+
+/// "timeStamp", "time_stamp" and "TIMESTAMP" as "timestamp".
+std::string in_small_letters(std::string_view name) {
+  std::string letters;
+  for (const char c : name) {
+    if (c >= 'A' && c <= 'Z') letters += static_cast<char>(c - 'A' + 'a');
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9')) letters += c;
+  }
+  return letters;
+}
+
 }  // namespace
 
 const CloudField* find_field(const CloudHead& head, std::string_view name) {
@@ -159,11 +170,21 @@ std::vector<std::int64_t> integers_of(const CloudHead& head, const CloudField& f
 }
 
 bool is_time_field(std::string_view name) {
-  return std::ranges::find(kTimeFieldNames, name) != kTimeFieldNames.end();
+  constexpr std::array<std::string_view, 8> kShort = {"t",   "ts",  "dt",      "tns",
+                                                      "tus", "tms", "toffset", "deltat"};
+  const std::string letters = in_small_letters(name);
+  return letters.find("time") != letters.npos || letters.find("stamp") != letters.npos ||
+         std::ranges::find(kShort, letters) != kShort.end();
 }
 
 const CloudField* find_time_field(const CloudHead& head) {
-  const auto field = std::ranges::find_if(head.fields, is_time_field, &CloudField::name);
+  const auto is_usual = [](std::string_view name) {
+    return std::ranges::find(kUsualTimeFields, name) != kUsualTimeFields.end();
+  };
+  auto field = std::ranges::find_if(head.fields, is_usual, &CloudField::name);
+  if (field == head.fields.end()) {
+    field = std::ranges::find_if(head.fields, is_time_field, &CloudField::name);
+  }
   return field == head.fields.end() ? nullptr : &*field;
 }
 

@@ -52,11 +52,12 @@ std::vector<std::int64_t> integers_of(const CloudHead& head, const CloudField& f
 /// What an error expects where points have no times.
 inline constexpr const char* kTimeFields = "a field t, time, timestamp or offset_time";
 
-/// Whether points say by a field of this name when they were measured: t, time, timestamp,
-/// offset_time, and two that are spelled otherwise.
+/// Whether points may say by a field of this name when they were measured: it holds "time" or
+/// "stamp", or is short for such a name, in any spelling. PointClock judges what it holds.
 bool is_time_field(std::string_view name);
 
-/// Returns the first such field; nullptr when there is none.
+/// Returns the first of t, time, timestamp and offset_time, else the first such field; nullptr when
+/// there is none.
 const CloudField* find_time_field(const CloudHead& head);
 
 /// What an error expects where points have no labels.

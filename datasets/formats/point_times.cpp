@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "datasets/text/numbers.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
@@ -68,6 +69,26 @@ std::optional<TimeUnit> unit_within(double number, double lowest_s, double highe
     if (time_s >= lowest_s && time_s < highest_s) return static_cast<TimeUnit>(unit);
   }
   return std::nullopt;
+}
+
+std::optional<TimeUnit> unit_since_1970(double number) { return unit_within(number, 6.3e8, 4.4e9); }
+
+double usual_step(std::span<const double> stamps, double q) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < stamps.size(); ++k) {
+    if (stamps[k] > stamps[k - 1]) steps.push_back(stamps[k] - stamps[k - 1]);
+  }
+  return steps.empty() ? 0.0 : quantile(std::move(steps), q, QuantileRule::kUpper);
+}
+
+TimeUnit unit_of_stamps(std::span<const double> stamps) {
+  // A gap between two of few is no unit.
+  if (stamps.size() >= 4 && usual_step(stamps, 0.1) > kLongestKept_s) {
+    const auto by_step = unit_within(usual_step(stamps), 0.02, 5.0);
+    if (by_step) return *by_step;
+  }
+  return stamps.empty() ? TimeUnit::kSeconds
+                        : unit_since_1970(stamps.front()).value_or(TimeUnit::kSeconds);
 }
 
 double PointClock::longest_s() const {

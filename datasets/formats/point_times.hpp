@@ -29,6 +29,18 @@ inline std::string_view to_string(TimeUnit unit) {
 /// which is below 1000 times that; nothing when there is none.
 std::optional<TimeUnit> unit_within(double number, double lowest_s, double highest_s);
 
+/// Returns the unit in which a number is a time since 1970, of the years from 1990 to 2110.
+std::optional<TimeUnit> unit_since_1970(double number);
+
+/// Returns the median, or another quantile, of the steps that lead on; 0 where none does.
+double usual_step(std::span<const double> stamps, double q = 0.5);
+
+/// No sensor is slower, but recordings may keep few scans.
+inline constexpr double kLongestKept_s = 20.0;
+
+/// Returns the unit of stamps that should be in seconds, of scans or poses.
+TimeUnit unit_of_stamps(std::span<const double> stamps);
+
 /// What the points of a scan say, as it is stored.
 struct StoredTimes {
   std::vector<double> times;

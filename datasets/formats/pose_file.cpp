@@ -88,9 +88,10 @@ std::int64_t rounding_of(std::size_t decimals) {
   return half_unit_ns > kMost_ns ? kLeast_ns : std::max(half_unit_ns, kLeast_ns);
 }
 
-std::int64_t parse_stamp(const std::vector<std::string_view>& words, const PoseList& list,
-                         const TextLine& line, const std::filesystem::path& file) {
-  const auto stamp_ns = parse_seconds_as_ns(words.front());
+std::int64_t parse_stamp(const std::vector<std::string_view>& words, TimeUnit unit,
+                         const PoseList& list, const TextLine& line,
+                         const std::filesystem::path& file) {
+  const auto stamp_ns = parse_seconds_as_ns(words.front(), 3 * static_cast<int>(unit));
   if (!stamp_ns) {
     const bool is_number = parse_double(words.front()).has_value();
     throw DataError(file, line.number,
@@ -106,10 +107,10 @@ std::int64_t parse_stamp(const std::vector<std::string_view>& words, const PoseL
 }
 
 /// Takes a row of kTum; of those with the same stamp the first.
-void add_stamped(const std::vector<std::string_view>& words, const TextLine& line, PoseList& list,
-                 const std::filesystem::path& file) {
+void add_stamped(const std::vector<std::string_view>& words, TimeUnit unit, const TextLine& line,
+                 PoseList& list, const std::filesystem::path& file) {
   const Pose pose = parse_seven(words, 1, list.format, line, file);
-  const std::int64_t stamp_ns = parse_stamp(words, list, line, file);
+  const std::int64_t stamp_ns = parse_stamp(words, unit, list, line, file);
   if (!list.stamps_ns.empty() && stamp_ns == list.stamps_ns.back()) {
     ++list.repeated;
     return;
@@ -245,9 +246,13 @@ PoseList parse_pose_list(std::string_view text, std::optional<PoseFormat> format
   PoseList list;
   bool first = true;
   std::size_t decimals = 0;
+  TimeUnit unit = TimeUnit::kSeconds;
   for (const TextLine& line : split_lines(text, file)) {
     if (line.text.starts_with('#')) continue;
-    if (first) list.format = format.value_or(format_of(line.text));
+    if (first) {
+      list.format = format.value_or(format_of(line.text));
+      if (list.format == PoseFormat::kTum) unit = unit_of_rows(text, file);
+    }
     first = false;
     if (list.format == PoseFormat::kKitti) {
       list.poses.push_back(parse_pose_row(line.text, file, line.number));
@@ -256,11 +261,11 @@ PoseList parse_pose_list(std::string_view text, std::optional<PoseFormat> format
     } else {
       const auto words = split_at_blanks(line.text);
       decimals = std::max(decimals, decimals_of(words.front()));
-      add_stamped(words, line, list, file);
+      add_stamped(words, unit, line, list, file);
     }
     check_near_first(list.poses, line, file);
   }
-  list.rounding_ns = rounding_of(decimals);
+  list.rounding_ns = rounding_of(decimals + 3 * static_cast<std::size_t>(unit));
   return list;
 }
 

@@ -152,6 +152,16 @@ std::vector<double> parse_time_numbers(std::string_view text, const std::filesys
   return numbers;
 }
 
+TimeUnit unit_of_rows(std::string_view text, const std::filesystem::path& file) {
+  std::vector<double> stamps;
+  for (const TextLine& line : split_lines(text, file)) {
+    const auto words = split_at_blanks(line.text);
+    if (words.empty() || words.front().starts_with('#')) continue;
+    stamps.push_back(parse_double(words.front()).value_or(0.0));
+  }
+  return unit_of_stamps(stamps);
+}
+
 std::string seconds_text(std::int64_t stamp_ns) {
   constexpr std::uint64_t kNsPerSecond = 1'000'000'000;
   const auto bits = static_cast<std::uint64_t>(stamp_ns);

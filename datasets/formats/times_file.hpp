@@ -24,6 +24,9 @@ std::vector<std::int64_t> parse_times(std::string_view text, const std::filesyst
                                       TimeUnit unit = TimeUnit::kSeconds);
 /// Returns the numbers as they stand, 0 for text.
 std::vector<double> parse_time_numbers(std::string_view text, const std::filesystem::path& file);
+/// Returns the unit of the numbers that rows begin with, which should be seconds; lines with # are
+/// comments.
+TimeUnit unit_of_rows(std::string_view text, const std::filesystem::path& file);
 /// Formats nanoseconds as seconds with nine decimals.
 std::string seconds_text(std::int64_t stamp_ns);
 /// Formats times.txt: seconds with nine decimals, one per line.

@@ -12,10 +12,12 @@ namespace mosbench {
 /// When a message says that it was measured, and when it was recorded.
 struct MessageTimes {
   std::int64_t stamp_ns = 0, recorded_ns = 0;
+  std::int64_t last_ns = 0;  ///< of the points of a scan, after its stamp
 };
 
-/// Returns a sentence where scans and poses are stamped by clocks that differ by more than 1.5 s,
-/// measured against the recorder's: since boot instead of since 1970, or without leap seconds. Some
+/// Returns a sentence where scans and poses are stamped by clocks that differ, measured against the
+/// recorder's: by more than 1.5 s (since boot instead of since 1970, or without leap seconds), or
+/// because scans were recorded before their points were measured, or far later than poses are. Some
 /// messages of each topic of poses are read. Throws DataError for damaged ones.
 std::optional<std::string> doubt_about_clocks(const BagReader& bag,
                                               std::span<const MessageTimes> scans);

@@ -3,15 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/rosbag/bag_clocks.hpp"
 #include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/rosbag/bag_topics.hpp"
+#include "datasets/rosbag/bag_turns.hpp"
+#include "datasets/sequence/pose_clock.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/sequence/stamps.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/numbers.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
@@ -53,8 +58,16 @@ BagSequence::BagSequence(std::string name, std::unique_ptr<const BagReader> bag,
   judge_times(asked);
   recording.reading.scan_files =
       fmt::format("{}, topic {}", bag_->path().filename().string(), topic);
+  const auto turns = doubt_about_turns(
+      scans_.size(), [this](std::size_t k) { return stored_cloud(scans_[k], false).points; });
+  if (turns) recording.doubts.push_back(fmt::format("topic {}: {}", topic, *turns));
   asked.has_own_poses() ? open_transforms(asked) : open_pose_file(asked);
   state_undistortion();
+  const PoseAt pose_at = transforms_
+                             ? PoseAt([this](auto ns) { return transforms_->at(ns); })
+                             : stamped_poses(bag_->path().parent_path(), "poses.txt", asked);
+  const auto clocks = doubt_about_clock(*this, pose_at);
+  if (clocks) recording.doubts.push_back(*clocks);
 }
 
 PoseAt BagSequence::pose_at(std::size_t scan_index) const {
@@ -161,15 +174,31 @@ void BagSequence::open_transforms(const Reading& asked) {
   recording.reading.poses.source = transforms.source;
   state_pose_origin(bag_->files().front(), recording.reading.poses, recording.doubts);
   recording.remarks.push_back("poses from the bag: " + transforms.source);
-  for (std::string& remark : transforms.remarks) recording.remarks.push_back(std::move(remark));
+  std::ranges::move(transforms.remarks, std::back_inserter(recording.remarks));
+  std::ranges::move(transforms.doubts, std::back_inserter(recording.doubts));
   transforms_ = std::move(transforms.map_from_sensor);
+  const std::int64_t last_ns = usual_last_ns();
   std::vector<MessageTimes> times;
-  for (const Scan& scan : scans_) times.push_back({scan.stamp_ns, scan.message.recorded_ns});
+  for (const Scan& scan : scans_) {
+    times.push_back({scan.stamp_ns, scan.message.recorded_ns, last_ns});
+  }
   const std::string clocks = doubt_about_clocks(*bag_, times).value_or("");
   if (!clocks.empty()) recording.doubts.push_back(clocks);
   leave_out_uncovered(clocks);
   enter_scans();
   for (ScanEntry& scan : recording.scans) scan.map_from_sensor = *transforms_->at(*scan.stamp_ns);
+}
+
+std::int64_t BagSequence::usual_last_ns() const {
+  constexpr std::size_t kLooked = 9;
+  std::vector<double> lasts_ns;
+  for (std::size_t i = 0; i < kLooked; ++i) {
+    const MovingCloud cloud = cloud_of(scans_[i * scans_.size() / kLooked]);
+    if (!cloud.times_ns.empty())
+      lasts_ns.push_back(static_cast<double>(std::ranges::max(cloud.times_ns)));
+  }
+  if (lasts_ns.empty()) return 0;
+  return std::llround(quantile(std::move(lasts_ns), 0.5, QuantileRule::kUpper));
 }
 
 bool BagSequence::covered(const Scan& scan) const {

@@ -49,6 +49,8 @@ class BagSequence : public Sequence {
   void expect_one_frame(const std::string& topic) const;
   void open_transforms(const Reading& asked);
   void open_pose_file(const Reading& asked);
+  /// When the last point of a scan is usually measured after the stamp; 0 where it is not known.
+  std::int64_t usual_last_ns() const;
   bool covered(const Scan& scan) const;
   void leave_out_uncovered(const std::string& clocks);
   void state_undistortion();

@@ -43,8 +43,8 @@ std::string all_topics(const BagReader& bag) {
 struct Transforms {
   std::vector<StampedTransform> changing, always;
   std::set<std::string> topics;
-  std::size_t poses = 0;    ///< of a topic of poses
-  std::string remark = {};  ///< on whose they are
+  std::size_t poses = 0;   ///< of a topic of poses
+  std::string doubt = {};  ///< whose they are
 };
 
 std::string frames_of(const Transforms& transforms) {
@@ -62,7 +62,7 @@ std::string frames_of(const Transforms& transforms) {
 struct Way {
   TransformChain chain;
   std::vector<std::string> frames;  ///< the sensor's first, the map's last
-  std::string source, remark;
+  std::string source, doubt;
 };
 
 /// Finds the poses of the sensor's frame in that of the map: see `bag_transforms`.
@@ -74,9 +74,9 @@ class PoseSearch {
   BagTransforms run() {
     std::optional<Way> found = asked_.pose_topic ? of_topic(*asked_.pose_topic) : of_first_kind();
     if (found) {
-      std::vector<std::string> remarks = ignored();
-      if (!found->remark.empty()) remarks.push_back(std::move(found->remark));
-      return {std::move(found->chain), std::move(found->source), std::move(remarks)};
+      std::vector<std::string> doubts;
+      if (!found->doubt.empty()) doubts.push_back(std::move(found->doubt));
+      return {std::move(found->chain), std::move(found->source), ignored(), std::move(doubts)};
     }
     const Transforms odometry = transforms_of({kOdometry});
     throw MissingPoses(
@@ -92,13 +92,14 @@ class PoseSearch {
  private:
   /// Says which transforms were ignored.
   std::vector<std::string> ignored() const {
-    if (unsound_.empty()) return {};
     std::set<std::string> frames;
     std::size_t count = 0;
     for (const auto& [frame, times] : unsound_) {
+      if (times == 0) continue;
       frames.insert(frame.empty() ? "no frame" : frame);
       count += times;
     }
+    if (count == 0) return {};
     return {fmt::format("{} of {} ignored, as tf2 does: not finite, no rotation, or without frames",
                         counted(count, "transform"),
                         listed(frames) + (count == 1 ? " is" : " are"))};
@@ -152,13 +153,14 @@ class PoseSearch {
     } else {
       add_transforms(topic, found.changing);
     }
+    name_map(found.changing);
     found.poses = found.changing.size();
     std::set<std::string> posed;
     for (StampedTransform& transform : found.changing) {
       if (posed_frame_) transform.child = *posed_frame_;
       if (transform.child.empty()) {
         transform.child = sensor_frame_;
-        found.remark = remark_on_sensor(topic);
+        found.doubt = doubt_about_frame(topic);
       }
       posed.insert(transform.child);
     }
@@ -168,8 +170,18 @@ class PoseSearch {
     return found;
   }
 
+  /// Poses of which none names its map are in that asked for; else those that name none are
+  /// ignored.
+  void name_map(std::vector<StampedTransform>& poses) {
+    const auto has_none = [](const StampedTransform& pose) { return pose.parent.empty(); };
+    if (std::ranges::all_of(poses, has_none)) {
+      for (StampedTransform& pose : poses) pose.parent = map_frame_.value_or("map");
+    }
+    unsound_[""] += std::erase_if(poses, has_none);
+  }
+
   /// What is doubtful about poses without a frame where the sensor is mounted on another.
-  std::string remark_on_sensor(const std::string& topic) const {
+  std::string doubt_about_frame(const std::string& topic) const {
     const auto mount = [&](const StampedTransform& transform) {
       return transform.child == sensor_frame_ && !is_identity(transform.parent_from_child);
     };
@@ -219,7 +231,7 @@ class PoseSearch {
     if (!map_frame_ && std::ranges::none_of(transforms.changing, changes)) return std::nullopt;
     return Way{tree.chain(frames, asked_.max_pose_gap_s), frames,
                listed(transforms.topics) + ", " + frames.back() + " from " + sensor_frame_,
-               transforms.remark};
+               transforms.doubt};
   }
 
   /// The one topic of a type whose poses lead to the sensor.
@@ -249,7 +261,8 @@ class PoseSearch {
     const std::string topic = asked.substr(0, at);
     if (at != asked.npos) posed_frame_ = asked.substr(at + 1);
     std::set<std::string> others;
-    for (const std::string_view type : {kTransformStamped, kOdometry, kPoseStamped, kPath}) {
+    for (const std::string_view type :
+         {kTransformStamped, kOdometry, kPoseStamped, kPoseWithCovarianceStamped, kPath}) {
       std::set<std::string> topics = topics_of_type(bag_, type);
       if (topics.contains(topic)) return way_of(poses_in(type, topic));
       others.merge(topics);
@@ -285,7 +298,8 @@ class PoseSearch {
     };
     if (is_the_way(way_of(tf_, tf_tree_), true) || is_the_way(way_of(stamped_), true))
       return standing;
-    for (const std::string_view type : {kOdometry, kPoseStamped, kPath}) {
+    for (const std::string_view type :
+         {kOdometry, kPoseStamped, kPoseWithCovarianceStamped, kPath}) {
       if (is_the_way(of_type(type), false)) return standing;
     }
     return standing;

@@ -29,6 +29,8 @@ inline constexpr std::string_view kOldTfMessage = "tf/tfMessage";
 inline constexpr std::string_view kTransformStamped = "geometry_msgs/TransformStamped";
 inline constexpr std::string_view kOdometry = "nav_msgs/Odometry";
 inline constexpr std::string_view kPoseStamped = "geometry_msgs/PoseStamped";
+inline constexpr std::string_view kPoseWithCovarianceStamped =
+    "geometry_msgs/PoseWithCovarianceStamped";
 inline constexpr std::string_view kPath = "nav_msgs/Path";
 
 /// What a message is and how it is encoded.

@@ -64,7 +64,8 @@ StampedTransform take_transform(MessageCursor& cursor, bool names_child, bool is
   const std::optional<Pose> pose = take_pose(cursor);
   if (pose) transform.parent_from_child = *pose;
   const bool has_frames = !transform.parent.empty() && !transform.child.empty();
-  transform.is_sound = pose && transform.parent != transform.child && (has_frames || is_pose);
+  const bool is_of_itself = has_frames && transform.parent == transform.child;
+  transform.is_sound = pose && !is_of_itself && (has_frames || is_pose);
   return transform;
 }
 
@@ -95,6 +96,14 @@ std::uint32_t fitting_row_step_bytes(const CloudHead& head, const std::filesyste
   const bool is_padded = head.row_step_bytes > row_bytes &&
                          std::uint64_t{head.row_step_bytes} * head.height <= head.records_bytes;
   return is_padded ? head.row_step_bytes : static_cast<std::uint32_t>(row_bytes);
+}
+
+/// Some drivers leave a height or width of 0: what the bytes hold are the points.
+void count_points(CloudHead& head) {
+  if (head.points() > 0 || head.point_step_bytes == 0) return;
+  if (head.records_bytes < head.point_step_bytes) return;
+  head.height = 1;
+  head.width = head.records_bytes / head.point_step_bytes;
 }
 
 /// The points of a CustomMsg are records of 19 bytes, which CDR begins at multiples of 4.
@@ -147,7 +156,8 @@ std::vector<StampedTransform> parse_transforms(std::string_view bytes, const Mes
   const auto name = std::string(format.type.substr(format.type.find('/') + 1));
   MessageCursor cursor(bytes, format.encoding, file, "a " + name);
   const bool is_path = format.type == kPath, is_odometry = format.type == kOdometry;
-  const bool is_pose = is_path || is_odometry || format.type == kPoseStamped;
+  const bool is_pose = is_path || is_odometry || format.type == kPoseStamped ||
+                       format.type == kPoseWithCovarianceStamped;
   const bool names_child = !is_pose || is_odometry;
   if (is_path) take_header(cursor);
   const bool is_list = is_path || format.type == kTfMessage || format.type == kOldTfMessage;
@@ -191,6 +201,7 @@ CloudHead parse_cloud_head(std::string_view bytes, const std::filesystem::path& 
   head.row_step_bytes = cursor.take<std::uint32_t>();
   head.records_bytes = cursor.take<std::uint32_t>();
   head.records_at_bytes = cursor.position_bytes();
+  count_points(head);
   head.row_step_bytes = fitting_row_step_bytes(head, file);
   return head;
 }

@@ -17,12 +17,13 @@ namespace mosbench {
 struct StampedTransform {
   std::int64_t stamp_ns = 0;
   std::string parent;  ///< frames without a leading slash
-  std::string child;   ///< empty for a pose, whose message names no child
+  std::string child;   ///< empty for a pose, whose message names no child; it may have no parent
   Pose parent_from_child = Pose::Identity();
   bool is_sound = true;  ///< else tf2 ignores it: not finite, no rotation, or without frames
 };
 
-/// Returns the transforms of a TFMessage, a TransformStamped, an Odometry, a PoseStamped or a Path.
+/// Returns the transforms of a TFMessage, a TransformStamped, an Odometry, a PoseStamped, one with
+/// covariance, or a Path.
 /// Throws DataError naming `file` for bytes that are cut off.
 std::vector<StampedTransform> parse_transforms(std::string_view bytes, const MessageFormat& format,
                                                const std::filesystem::path& file);

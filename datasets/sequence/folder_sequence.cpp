@@ -7,6 +7,7 @@
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/point_records.hpp"
 #include "datasets/formats/scan_file.hpp"
+#include "datasets/sequence/pose_clock.hpp"
 #include "datasets/sequence/stamps.hpp"
 #include "datasets/text/errors.hpp"
 
@@ -27,6 +28,8 @@ FolderSequence::FolderSequence(std::string name, const std::filesystem::path& fo
   place_scans(folder, std::string(layout.poses_file), posed, recording);
   recording.files.insert(recording.files.end(), times.begin(), times.end());
   judge_times(asked);
+  const PoseAt pose_at = stamped_poses(folder, std::string(layout.poses_file), posed);
+  if (const auto clocks = doubt_about_clock(*this, pose_at)) recording.doubts.push_back(*clocks);
 }
 
 void FolderSequence::list_scans(const std::filesystem::path& folder, const FolderLayout& layout,

@@ -10,7 +10,9 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/pose_file.hpp"
+#include "datasets/formats/times_file.hpp"
 #include "datasets/sequence/fingerprint.hpp"
+#include "datasets/sequence/pose_clock.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
@@ -32,13 +34,28 @@ PoseTrack track_of(const PoseList& list) {
   return PoseTrack(std::move(stamped));
 }
 
+/// How far poses begin and end after scans do, where that is the same: these are of one drive.
+std::optional<std::int64_t> offset_of_ends_ns(const std::vector<std::int64_t>& poses_ns,
+                                              const std::vector<std::int64_t>& scans_ns) {
+  if (poses_ns.size() < scans_ns.size()) return std::nullopt;
+  const std::int64_t step_ns =
+      (poses_ns.back() - poses_ns.front()) / static_cast<std::int64_t>(poses_ns.size());
+  const std::int64_t first_ns = poses_ns.front() - scans_ns.front(),
+                     last_ns = poses_ns.back() - scans_ns.back();
+  if (std::abs(first_ns - last_ns) > step_ns || std::abs(first_ns + last_ns) <= 2 * step_ns) {
+    return std::nullopt;
+  }
+  return (first_ns + last_ns) / 2;
+}
+
 /// How far stamps of poses lie behind those of the scans that they belong to, where that is about
 /// the same for all: the poses have the time of another clock, or of their recording.
 std::optional<std::int64_t> constant_offset_ns(const std::vector<std::int64_t>& poses_ns,
                                                const std::vector<std::int64_t>& scans_ns) {
   constexpr std::size_t kFewest = 5;
   constexpr std::int64_t kLeast_ns = 5'000'000, kSpread_ns = 2'000'000;
-  if (poses_ns.size() != scans_ns.size() || scans_ns.size() < kFewest) return std::nullopt;
+  if (scans_ns.size() < kFewest) return std::nullopt;
+  if (poses_ns.size() != scans_ns.size()) return offset_of_ends_ns(poses_ns, scans_ns);
   std::vector<std::int64_t> offsets_ns;
   for (std::size_t k = 0; k < scans_ns.size(); ++k) {
     offsets_ns.push_back(poses_ns[k] - scans_ns[k]);
@@ -97,26 +114,52 @@ class SensorPoseReader {
     result_.done.source = is_users ? file_.string() : file_.filename().string();
     result_.done.format = list.format;
     pair_with_scans(list, scans);
-    invert_or_not(asked_.pose_direction.value_or(list.format == PoseFormat::kRollout
-                                                     ? PoseDirection::kSensorFromMap
-                                                     : PoseDirection::kMapFromSensor));
-    result_.done.frame = move_to_lidar(list.format);
+    turn_into_lidars(list.format);
     if (!is_users) state_pose_origin(file_, result_.done, result_.doubts);
     return std::move(result_);
   }
 
+  PoseAt at_any_time() {
+    const PoseList list = read_pose_list(file_, asked_.pose_format);
+    if (list.stamps_ns.empty()) return {};
+    pose_at_ = [track = track_of(list)](std::int64_t time_ns) { return track.at(time_ns); };
+    turn_into_lidars(list.format);
+    return std::move(pose_at_);
+  }
+
  private:
+  void turn_into_lidars(PoseFormat format) {
+    invert_or_not(asked_.pose_direction.value_or(format == PoseFormat::kRollout
+                                                     ? PoseDirection::kSensorFromMap
+                                                     : PoseDirection::kMapFromSensor));
+    result_.done.frame = move_to_lidar(format);
+  }
+
   void pair_with_scans(const PoseList& list, const std::vector<ScanEntry>& scans) {
     for (std::string& doubt : list.remarks(file_)) result_.doubts.push_back(std::move(doubt));
+    const TimeUnit unit =
+        list.stamps_ns.empty() ? TimeUnit::kSeconds : unit_of_rows(read_file(file_), file_);
+    if (unit != TimeUnit::kSeconds) {
+      result_.doubts.push_back(fmt::format("the stamps of {} are taken as {}",
+                                           file_.filename().string(), to_string(unit)));
+    }
     const std::vector<std::int64_t> stamps_ns = stamps_of(scans);
     if (!list.stamps_ns.empty() && !stamps_ns.empty()) {
       interpolate(list, stamps_ns);
       return;
     }
+    const bool lacks_stamps = !list.stamps_ns.empty() && !scans.empty();
     if (list.poses.size() != scans.size()) {
       throw DataError(file_,
                       fmt::format("{} pose rows for {} scans", list.poses.size(), scans.size()),
-                      "one per scan");
+                      lacks_stamps ? "one per scan, or stamps of the scans (times.txt, or names "
+                                     "that are stamps), by which poses are looked up"
+                                   : "one per scan");
+    }
+    if (lacks_stamps) {
+      result_.doubts.push_back(fmt::format(
+          "{} has stamps and the scans have none: rows are paired with scans in their order",
+          file_.filename().string()));
     }
     result_.map_from_sensor.assign(list.poses.begin(), list.poses.end());
     result_.done.pairing = "row by row";
@@ -179,7 +222,7 @@ class SensorPoseReader {
     if (!offset_ns) return "";
     return fmt::format(
         "all stamps of {} are {:.1f} ms {} those of the scans: if these are times of "
-        "recording, every pose is of another moment",
+        "recording or of another clock, every pose is of another moment",
         file_.filename().string(), std::abs(seconds_of(*offset_ns)) * 1e3,
         *offset_ns > 0 ? "after" : "before");
   }
@@ -200,12 +243,23 @@ class SensorPoseReader {
                      : "stamps in seconds: these fit as " + unit);
   }
 
+  template <typename Turn>
+  void turn_poses(const Turn& turn) {
+    for (auto& pose : result_.map_from_sensor) {
+      if (pose) pose = turn(*pose);
+    }
+    if (!pose_at_) return;
+    pose_at_ = [turn, as_stored = std::move(pose_at_)](std::int64_t time_ns) {
+      std::optional<Pose> pose = as_stored(time_ns);
+      if (pose) pose = turn(*pose);
+      return pose;
+    };
+  }
+
   void invert_or_not(PoseDirection direction) {
     result_.done.direction = direction;
     if (direction == PoseDirection::kMapFromSensor) return;
-    for (auto& pose : result_.map_from_sensor) {
-      if (pose) pose = pose->inverse();
-    }
+    turn_poses([](const Pose& pose) { return Pose(pose.inverse()); });
     result_.remarks.push_back(file_.filename().string() +
                               " is read as sensor_from_map: its poses are inverted");
   }
@@ -228,9 +282,7 @@ class SensorPoseReader {
       result_.done.frame_by_mark = true;
       return PoseFrame::kLidar;
     }
-    for (auto& pose : result_.map_from_sensor) {
-      if (pose) pose = lidar_pose(*pose, camera_from_lidar);
-    }
+    turn_poses([=](const Pose& pose) { return lidar_pose(pose, camera_from_lidar); });
     result_.remarks.push_back(fmt::format(
         "calib.txt holds a Tr other than the identity: {} is read as camera poses, lidar pose = "
         "Tr^-1 * P * Tr (KITTI)",
@@ -242,6 +294,7 @@ class SensorPoseReader {
   const Reading& asked_;
   fs::path file_;
   SensorPoses result_;
+  PoseAt pose_at_;
 };
 
 /// Says where poses are expected, and names those that lie where KITTI's odometry benchmark has
@@ -337,6 +390,12 @@ std::vector<std::size_t> place_scans(const fs::path& folder, const std::string& 
   const fs::path file = asked.has_own_poses() ? folder / own_file : *asked.pose_file();
   if (asked.has_own_poses() && !is_there(file)) throw missing_poses(folder, file);
   return place_scans(SensorPoseReader(folder, asked, file).run(recording.scans), recording);
+}
+
+PoseAt stamped_poses(const fs::path& folder, const std::string& own_file, const Reading& asked) {
+  if (asked.is_by_odometry()) return {};
+  const fs::path file = asked.has_own_poses() ? folder / own_file : *asked.pose_file();
+  return SensorPoseReader(folder, asked, file).at_any_time();
 }
 
 SensorPoses own_poses(std::string source, const fs::path& file) {

@@ -13,31 +13,19 @@
 #include "datasets/formats/times_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/numbers.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {
 
 constexpr double kShortestStep_s = 0.005, kLongestStep_s = 5.0;
-/// No sensor is slower, but recordings may keep few scans.
-constexpr double kLongestKept_s = 20.0;
-/// Stamps since 1970 of the years from 1990 to 2110.
-constexpr double kEarliest_s = 6.3e8, kLatest_s = 4.4e9;
 constexpr std::size_t kMostJudgedScans = 64;
-
-/// Median, or another quantile, of the steps that lead on; 0 where none does.
-double usual_step(const std::vector<double>& stamps, double q = 0.5) {
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < stamps.size(); ++k) {
-    if (stamps[k] > stamps[k - 1]) steps.push_back(stamps[k] - stamps[k - 1]);
-  }
-  return steps.empty() ? 0.0 : quantile(std::move(steps), q, QuantileRule::kUpper);
-}
 
 /// The unit of whole numbers in names; nothing for the numbers of scans. Small numbers that count
 /// in steps of some milliseconds or seconds are numbers.
 std::optional<TimeUnit> unit_of_stems(const std::vector<double>& numbers) {
   constexpr double kSmallestStepOfStamps = 5000.0, kOldestStampStem = 1e15;
-  const auto since_1970 = unit_within(numbers.front(), kEarliest_s, kLatest_s);
+  const auto since_1970 = unit_since_1970(numbers.front());
   const double step = usual_step(numbers);
   const auto by_step = unit_within(step, kShortestStep_s, kLongestStep_s);
   // Seconds and milliseconds could as well be numbers that begin with a date.
@@ -59,7 +47,37 @@ void state_unit(Recording& recording, const std::string& where, TimeUnit unit, d
       recording.scans.size(), to_string(unit), step * 1e-9 * static_cast<double>(ns_per(unit))));
 }
 
+/// The stamp of a name as 1700000000.1 or 1700000000_100000000, seconds and their decimals.
+std::optional<std::int64_t> stamp_of_parts_ns(std::string_view stem) {
+  const std::size_t between = stem.find_first_of("._");
+  if (between == stem.npos) return std::nullopt;
+  const auto seconds = parse_unsigned(stem.substr(0, between));
+  const std::string_view decimals = stem.substr(between + 1);
+  // Without a point only nine digits are surely nanoseconds.
+  const bool is_fraction = stem[between] == '.' || decimals.size() == 9;
+  if (!seconds || !is_fraction || !parse_unsigned(decimals)) return std::nullopt;
+  if (unit_since_1970(static_cast<double>(*seconds)) != TimeUnit::kSeconds) return std::nullopt;
+  return parse_seconds_as_ns(fmt::format("{}.{}", *seconds, decimals));
+}
+
+/// Returns whether all scans are called so.
+bool stamp_by_parts(Recording& recording) {
+  std::vector<std::int64_t> stamps_ns;
+  for (const ScanEntry& scan : recording.scans) {
+    const auto stamp_ns = stamp_of_parts_ns(scan.stem);
+    if (!stamp_ns) return false;
+    stamps_ns.push_back(*stamp_ns);
+  }
+  for (std::size_t k = 0; k < stamps_ns.size(); ++k) recording.scans[k].stamp_ns = stamps_ns[k];
+  return true;
+}
+
 void stamp_by_stems(Recording& recording) {
+  if (stamp_by_parts(recording)) {
+    state_unit(recording, "the names", TimeUnit::kSeconds,
+               usual_step_s(recording.scans).value_or(0.0));
+    return;
+  }
   std::vector<std::uint64_t> stems;
   std::vector<double> numbers;
   for (const ScanEntry& scan : recording.scans) {
@@ -81,14 +99,6 @@ void stamp_by_stems(Recording& recording) {
   }
 }
 
-/// The unit of a file that should be in seconds.
-TimeUnit unit_of_times(const std::vector<double>& times) {
-  const double step = usual_step(times);
-  // A gap between two of few scans is no unit.
-  if (times.size() < 4 || usual_step(times, 0.1) <= kLongestKept_s) return TimeUnit::kSeconds;
-  return unit_within(step, 0.02, kLongestStep_s).value_or(TimeUnit::kSeconds);
-}
-
 void stamp_by_file(const std::filesystem::path& file, Recording& recording) {
   const std::string text = read_file(file);
   const std::vector<double> numbers = parse_time_numbers(text, file);
@@ -97,7 +107,7 @@ void stamp_by_file(const std::filesystem::path& file, Recording& recording) {
                     fmt::format("{} times for {} scans", numbers.size(), recording.scans.size()),
                     "one per scan");
   }
-  const TimeUnit unit = unit_of_times(numbers);
+  const TimeUnit unit = unit_of_stamps(numbers);
   const std::vector<std::int64_t> stamps_ns = parse_times(text, file, unit);
   for (std::size_t k = 0; k < stamps_ns.size(); ++k) {
     recording.scans[k].stamp_ns = stamps_ns[k];

@@ -84,8 +84,26 @@ TEST_P(BagPoses, WithoutAFrameAreTheSensorsUnlessTheUserSaysWhose) {
   });
   const BagSequence sequence = open(drive);
   EXPECT_EQ(xs_of(sequence).back(), 11.0);
-  EXPECT_THAT(sequence.remarks(), Contains(HasSubstr("ask for pose_topic /pose@base")));
+  EXPECT_THAT(sequence.recording().doubts, Contains(HasSubstr("ask for pose_topic /pose@base")));
   EXPECT_EQ(xs_of(open(drive, {.pose_topic = "/pose@base"})).back(), 21.0);
+}
+
+TEST_P(BagPoses, OfWhichNoneNamesAMapAreTaken) {
+  for (const std::string_view type : {kOdometry, kPoseStamped, kPoseWithCovarianceStamped}) {
+    for (const std::string child : {"", "lidar"}) {
+      const Drive drive = drive_of([&](Drive& to, std::int64_t stamp_ns, double k) {
+        add_pose(to, type, stamp_ns, k, child, 1.0, "");
+      });
+      EXPECT_EQ(xs_of(open(drive)).back(), 11.0) << type;
+      EXPECT_EQ(xs_of(open(drive, {.map_frame = "world"})).back(), 11.0) << type;
+    }
+    const Drive later = drive_of([&](Drive& to, std::int64_t stamp_ns, double k) {
+      add_pose(to, type, stamp_ns, k < 1 ? 99.0 : k, "lidar", 1.0, k < 1 ? "" : "odom");
+    });
+    const BagSequence sequence = open(later);
+    EXPECT_EQ(xs_of(sequence).front(), 1.0) << "that of the start is ignored";
+    EXPECT_THAT(sequence.remarks(), Contains(HasSubstr("1 transform of no frame is ignored")));
+  }
 }
 
 TEST_P(BagPoses, InHolesAreNotInvented) {

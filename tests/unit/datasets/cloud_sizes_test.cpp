@@ -72,6 +72,17 @@ TEST(CloudSizes, AreThoseOfThePointsWhereTheRowStepDoesNotFit) {
   }
 }
 
+TEST(CloudSizes, OfNothingAreThoseOfTheBytes) {
+  for (const auto& [height, width] : {std::pair{0U, 6U}, {6U, 0U}, {0U, 0U}}) {
+    OddCloud cloud = odd_cloud(1, 6, 0);
+    cloud.head.height = height;
+    cloud.head.width = width;
+    expect_read(cloud, "without a height or width");
+    cloud.records.clear();
+    EXPECT_TRUE(parse_cloud(format_cloud(cloud.head, ""), "f").points.empty());
+  }
+}
+
 TEST(CloudSizes, TooSmallForThePointsAreRefused) {
   for (const std::uint32_t height : {1U, 2U}) {
     for (const std::uint32_t step : {0U, 60U, 120U}) {

@@ -57,14 +57,15 @@ class BagPoses : public testing::TestWithParam<DriveBag> {
   }
   /// A pose message; `child` of Odometry only, `length` of its quaternion.
   static void add_pose(Drive& drive, std::string_view type, std::int64_t stamp_ns, double x_m,
-                       const std::string& child = "base", double length = 1.0) {
+                       const std::string& child = "base", double length = 1.0,
+                       const std::string& parent = "odom") {
     const std::string kind(type);
     drive.push_back({"/pose", kind, stamp_ns, [=](MessageEncoding encoding) {
                        MessageSink sink(encoding);
                        if (encoding == MessageEncoding::kRos1) sink.put(std::uint32_t{0});
                        sink.put(static_cast<std::uint32_t>(stamp_ns / 1'000'000'000));
                        sink.put(static_cast<std::uint32_t>(stamp_ns % 1'000'000'000));
-                       sink.put_text("odom");
+                       sink.put_text(parent);
                        if (kind == kOdometry) sink.put_text(child);
                        for (const double value : {x_m, 0.0, 0.0, 0.0, 0.0, 0.0, length}) {
                          sink.put(value);

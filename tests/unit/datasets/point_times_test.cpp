@@ -172,16 +172,31 @@ TEST(PointTimes, OfNoSweepAreNotUsed) {
   }
 }
 
+TEST(PointTimes, StandInTheFieldWithAUsualNameWhereThereAreSeveral) {
+  CloudHead head;
+  for (const char* name : {"x", "stamp_of_packet", "t", "time_of_day"}) {
+    head.fields.push_back({name, 0, 7, 1});
+  }
+  EXPECT_EQ(find_time_field(head)->name, "t");
+  std::erase_if(head.fields, [](const CloudField& field) { return field.name == "t"; });
+  EXPECT_EQ(find_time_field(head)->name, "stamp_of_packet");
+}
+
 TEST(PointTimes, StandInAPropertyOfPlyFiles) {
   const auto ascii = [](const std::string& name) {
     return "ply\nformat ascii 1.0\nelement vertex 2\nproperty uint " + name +
            "\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
            "4000000000 1 2 3\n4100000000 4 5 6\n";
   };
-  for (const char* name : {"t", "time", "timestamp", "offset_time"}) {
+  for (const char* name :
+       {"t", "time", "timestamp", "offset_time", "time_stamp", "ts", "timeStamp", "TIME", "t_us",
+        "t_ns", "time_offset_us", "dt", "delta_t", "GpsTime", "stamp", "point_time_offset"}) {
     const std::string bytes = ascii(name);
     EXPECT_TRUE(parse_ply_summary(bytes, bytes.size(), "f").has_times);
     EXPECT_THAT(parse_ply_times(bytes, "f"), ElementsAre(4e9, 4.1e9));
+  }
+  for (const char* name : {"ring", "intensity", "tag", "nir", "curvature", "red"}) {
+    EXPECT_FALSE(is_time_field(name)) << name;
   }
   const std::string without = ascii("ring");
   EXPECT_FALSE(parse_ply_summary(without, without.size(), "f").has_times);

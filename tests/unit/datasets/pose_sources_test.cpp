@@ -7,6 +7,7 @@
 
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/pose_file.hpp"
+#include "datasets/formats/times_file.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/sequence/folder_sequence.hpp"
 #include "datasets/sequence/pose_source.hpp"
@@ -52,6 +53,25 @@ TEST(PoseList, RefusesRowsThatAreNoPose) {
   EXPECT_THAT(error_of("1 1 2 3 0 0 0 1\n0 1 2 3 0 0 0 1\n"),
               HasSubstr("f:2: its stamp is before that of the row before"));
   EXPECT_THAT(error_of("t 1 2 3 0 0 0 1\n"), HasSubstr("no time in seconds"));
+}
+
+TEST(PoseList, TellsTheUnitOfStamps) {
+  constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
+  for (const auto& [unit, per_ns] :
+       {std::pair{"s", 1'000'000'000}, {"ms", 1'000'000}, {"us", 1'000}, {"ns", 1}}) {
+    for (const std::int64_t start_ns : {kStart_ns, std::int64_t{50'000'000'000}}) {
+      std::string text;
+      for (int k = 0; k < 8; ++k) {
+        const std::int64_t stamp_ns = start_ns + k * 100'000'000;
+        text += fmt::format("{}.{:03} 0 0 0 0 0 0 1\n", stamp_ns / per_ns,
+                            stamp_ns % per_ns * 1000 / per_ns);
+      }
+      const PoseList list = parse_pose_list(text, std::nullopt, "f");
+      EXPECT_EQ(to_string(unit_of_rows(text, "f")), unit);
+      ASSERT_EQ(list.stamps_ns.size(), 8U);
+      EXPECT_EQ(list.stamps_ns.back(), start_ns + 700'000'000);
+    }
+  }
 }
 
 TEST(PoseTrack, InterpolatesBetweenNeighboursAndNeverBeyondTheEnds) {

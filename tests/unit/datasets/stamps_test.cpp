@@ -18,15 +18,19 @@ using testing::IsEmpty;
 constexpr std::size_t kScans = 8;
 
 /// Scans called by these numbers, with what their folder says of stamps.
-Recording stamped(const std::vector<std::uint64_t>& stems, const std::string& times_txt = "") {
+Recording stamped(const std::vector<std::string>& stems, const std::string& times_txt = "") {
   const TempFolder folder;
   if (!times_txt.empty()) folder.write("times.txt", times_txt);
   Recording recording;
-  for (const std::uint64_t stem : stems) {
-    recording.scans.emplace_back().stem = std::to_string(stem);
-  }
+  for (const std::string& stem : stems) recording.scans.emplace_back().stem = stem;
   read_stamps(folder.path(), recording);
   return recording;
+}
+
+Recording stamped(const std::vector<std::uint64_t>& numbers, const std::string& times_txt = "") {
+  std::vector<std::string> stems;
+  for (const std::uint64_t number : numbers) stems.push_back(std::to_string(number));
+  return stamped(stems, times_txt);
 }
 
 std::vector<std::uint64_t> numbers(std::uint64_t first, std::uint64_t step) {
@@ -66,6 +70,27 @@ TEST(Stamps, AreNotTheNumbersOfScans) {
     }
   }
   EXPECT_FALSE(stamped(numbers(2'011'092'600'001, 1)).scans[0].stamp_ns);
+}
+
+TEST(Stamps, InNamesOfSecondsAndTheirDecimalsAreBoth) {
+  using Form = std::string (*)(std::size_t);
+  const std::string since_1970 = "1700000000";
+  for (const auto form : std::initializer_list<Form>{
+           [](std::size_t k) { return "." + std::to_string(k); },
+           [](std::size_t k) { return "." + std::to_string(k) + "00000000"; },
+           [](std::size_t k) { return "_" + std::to_string(k) + "00000000"; }}) {
+    std::vector<std::string> stems;
+    for (std::size_t k = 0; k < kScans; ++k) stems.push_back(since_1970 + form(k));
+    const Recording recording = stamped(stems);
+    expect_stamps(recording, 1'700'000'000'000'000'000, 100'000'000);
+    EXPECT_EQ(recording.reading.stamps, "s");
+    EXPECT_EQ(recording.doubts.size(), 1U) << "the choice is said";
+    stems.back() = "last";
+    EXPECT_FALSE(stamped(stems).scans[0].stamp_ns);
+  }
+  for (const std::string stem : {"000012_000000001", "1700000000_000001", "1700000000.x", "0.1"}) {
+    EXPECT_FALSE(stamped(std::vector<std::string>{stem}).scans[0].stamp_ns) << stem;
+  }
 }
 
 TEST(Stamps, OfTimesTxtAreSecondsUnlessTheirStepsSayOtherwise) {

@@ -1,0 +1,155 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "datasets/rosbag/bag_turns.hpp"
+#include "datasets/sequence/pose_clock.hpp"
+#include "tests/unit/datasets/drive_bags.hpp"
+
+namespace mosbench {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+/// A sensor that turns unevenly, or drives evenly, in a room of 24 x 16 x 4 m.
+Pose room_from_sensor(double time_s, bool evenly) {
+  Pose pose = Pose::Identity();
+  const double turn = evenly ? 0.1 * time_s : 0.8 * time_s + 0.3 * std::sin(3.0 * time_s);
+  pose.linear() = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  pose.translation() = {4.0 * time_s - 6.0, 0.0, 1.6};
+  // A curve of one radius is the same motion at all times.
+  if (evenly) pose.translation() = {10.0 * std::sin(turn), -10.0 * std::cos(turn) + 10.0, 1.6};
+  return pose;
+}
+
+std::vector<Point> view_of_room(const Pose& pose, double mounted_rad = 0.0) {
+  const Eigen::Array3d low_m(-12.0, -8.0, 0.0), high_m(12.0, 8.0, 4.0);
+  std::vector<Point> points;
+  for (int i = 0; i < 60; ++i) {
+    for (int j = 0; j < 12; ++j) {
+      const double azimuth = 2.0 * M_PI * i / 60.0, elevation = -0.35 + 0.6 * j / 11.0;
+      const Eigen::Vector3d ray(std::cos(azimuth) * std::cos(elevation),
+                                std::sin(azimuth) * std::cos(elevation), std::sin(elevation));
+      const Eigen::Vector3d turned = Eigen::AngleAxisd(mounted_rad, Eigen::Vector3d::UnitZ()) * ray;
+      const Eigen::Array3d in_room = (pose.linear() * turned).array();
+      const Eigen::Array3d to_wall = (in_room > 0.0).select(high_m, low_m);
+      const double range =
+          ((to_wall - pose.translation().array()) / (in_room + 1e-12)).abs().minCoeff();
+      const Eigen::Vector3f point_m = (range * ray).cast<float>();
+      points.push_back({point_m.x(), point_m.y(), point_m.z(), 1.0F});
+    }
+  }
+  return points;
+}
+
+std::int64_t ns(double time_s) { return std::llround(1e9 * time_s); }
+
+class RoomDrive : public Sequence {
+ public:
+  RoomDrive(std::size_t scans, bool evenly) : evenly_(evenly) {
+    for (std::size_t k = 0; k < scans; ++k) {
+      ScanEntry& entry = mutable_recording().scans.emplace_back();
+      entry.stamp_ns = static_cast<std::int64_t>(k) * 100'000'000;
+      entry.map_from_sensor = pose_at(*entry.stamp_ns);
+    }
+  }
+  Pose pose_at(std::int64_t time_ns) const {
+    return room_from_sensor(1e-9 * static_cast<double>(time_ns), evenly_);
+  }
+  using Sequence::read;
+  void read(std::size_t scan_index, Frame& frame) const override {
+    describe(scan_index, frame);
+    frame.points = view_of_room(frame.map_from_sensor);
+  }
+
+ private:
+  bool evenly_;
+};
+
+TEST(PoseClock, IsDoubtedWithTheTimeByWhichItIsOff) {
+  const RoomDrive drive(12, false);
+  for (const auto& [off_s, said] : {std::pair{0.05, "poses of 50 ms after"},
+                                    {-0.05, "poses of 50 ms before"},
+                                    {0.15, "poses of 150 ms after"},
+                                    {0.3, "poses of 300 ms after"},
+                                    {-0.7, "poses of 700 ms before"}}) {
+    const auto doubt = doubt_about_clock(drive, [&](std::int64_t time_ns) {
+      return std::optional(drive.pose_at(time_ns - ns(off_s)));
+    });
+    EXPECT_THAT(doubt.value_or(""), HasSubstr(said));
+  }
+}
+
+TEST(PoseClock, IsNotDoubtedWhereItFitsOrChangesNothing) {
+  const RoomDrive uneven(12, false), even(12, true), few(3, false);
+  const auto doubt = [](const RoomDrive& drive, double off_s) {
+    return doubt_about_clock(drive, [&, off_s](std::int64_t time_ns) {
+      return std::optional(drive.pose_at(time_ns - ns(off_s)));
+    });
+  };
+  EXPECT_FALSE(doubt(uneven, 0.0));
+  EXPECT_FALSE(doubt(uneven, 0.002));
+  for (const double off_s : {0.0, 0.05, 0.5}) EXPECT_FALSE(doubt(even, off_s)) << off_s;
+  EXPECT_FALSE(doubt(few, 0.3)) << "three scans show nothing";
+  EXPECT_FALSE(doubt_about_clock(uneven, {})) << "poses without stamps";
+}
+
+TEST(ScansInTurn, OfTwoSensorsAreDoubted) {
+  const auto doubt = [](std::size_t scans, double mounted_rad) {
+    return doubt_about_turns(scans, [=](std::size_t k) {
+      return view_of_room(room_from_sensor(0.05 * static_cast<double>(k), false),
+                          k % 2 == 0 ? 0.0 : mounted_rad);
+    });
+  };
+  for (const std::size_t scans : {8U, 12U, 24U}) {
+    EXPECT_FALSE(doubt(scans, 0.0)) << scans;
+    EXPECT_THAT(doubt(scans, 2.0).value_or(""), HasSubstr("two sensors")) << scans;
+  }
+  for (const std::size_t scans : {0U, 1U, 3U}) EXPECT_FALSE(doubt(scans, 2.0)) << scans;
+}
+
+/// Clocks as the recorder shows them: scans last 0.1 s, and come `late_s` after their stamps.
+class BagClocks : public BagPoses {
+ protected:
+  std::vector<std::string> doubts(double scans_late_s, double poses_late_s) const {
+    Drive drive;
+    for (int k = 0; k < 12; ++k) {
+      add_cloud(drive, at(k));
+      drive.back().recorded_ns += ns(scans_late_s);
+      add_tf(drive, {at(k), "map", "lidar", pose_at_x(k)});
+      drive.back().recorded_ns += ns(poses_late_s);
+    }
+    return open(drive).recording().doubts;
+  }
+};
+
+TEST_P(BagClocks, AreDoubtedWhereTheRecorderShowsThatTheyDiffer) {
+  for (const double early_s : {0.05, 0.3, 1.0}) {
+    EXPECT_THAT(doubts(-early_s, 0.0), Contains(HasSubstr("ahead of the recorder's"))) << early_s;
+  }
+  for (const double late_s : {0.5, 1.0}) {
+    EXPECT_THAT(doubts(late_s, 0.002), Contains(HasSubstr("seem to differ"))) << late_s;
+  }
+}
+
+TEST_P(BagClocks, AreNotDoubtedWhereMessagesComeLateOrPosesAreDatedAhead) {
+  const auto clocks = Contains(HasSubstr("clock"));
+  for (const double late_s : {0.001, 0.1, 0.3}) {
+    EXPECT_THAT(doubts(late_s, 0.002), Not(clocks)) << late_s;
+    EXPECT_THAT(doubts(late_s, -1.0), Not(clocks)) << late_s;
+    EXPECT_THAT(doubts(late_s, 0.5), Not(clocks)) << late_s;
+  }
+  EXPECT_THAT(doubts(0.0, 0.0), Not(clocks)) << "a converter takes the stamps for both";
+}
+
+INSTANTIATE_TEST_SUITE_P(OfEveryKind, BagClocks,
+                         testing::Values(DriveBag::kRos1, DriveBag::kMcap, DriveBag::kDb3));
+
+}  // namespace
+}  // namespace mosbench
