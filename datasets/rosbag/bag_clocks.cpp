@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/formats/point_times.hpp"
 #include "datasets/rosbag/ros_messages.hpp"
 #include "datasets/text/numbers.hpp"
 
@@ -67,7 +68,9 @@ std::optional<std::string> doubt_about_recording(std::span<const MessageTimes> s
                                                  std::span<const MessageTimes> poses) {
   // A converter, which recorded nothing, takes the stamps for both.
   const auto is_converted = [](const MessageTimes& m) { return m.stamp_ns == m.recorded_ns; };
-  if (std::ranges::all_of(scans, is_converted)) return std::nullopt;
+  // A simulator, whose clock begins at 0, knows a scan before its last point.
+  const bool is_simulated = unit_since_1970(seconds(scans.front().stamp_ns)) != TimeUnit::kSeconds;
+  if (is_simulated || std::ranges::all_of(scans, is_converted)) return std::nullopt;
   const double early_s = ahead_s(scans, true), late_s = -early_s, poses_early_s = ahead_s(poses);
   if (early_s > kMostEarly_s && early_s > poses_early_s + kMostEarly_s) {
     return fmt::format(

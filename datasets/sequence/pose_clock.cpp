@@ -271,7 +271,8 @@ std::optional<std::string> doubt_about_clock(const Sequence& sequence, const Pos
   if (!fit || std::abs(fit->off_s) < kLeast_s || fit->gain < kLeastGain) return std::nullopt;
   return fmt::format(
       "the poses of {:.0f} ms {} the stamps of the scans fit these best, points are {:.1f} times "
-      "likelier there: scans and poses seem to be stamped by clocks that differ",
+      "likelier there: scans and poses are stamped by clocks that differ, or the points were "
+      "measured that much later and not undistorted",
       1e3 * std::abs(fit->off_s), fit->off_s > 0.0 ? "after" : "before", std::exp(fit->gain));
 }
 
