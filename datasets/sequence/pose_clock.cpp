@@ -21,6 +21,8 @@ namespace {
 
 constexpr std::size_t kMostWindows = 2, kMostScans = 10, kFewestScans = 4;
 constexpr double kLongestWindow_s = 1.6, kFarthest_s = 1.2;
+/// Sound poses gain less by another clock.
+constexpr double kLeastGain = 0.15;
 /// Farther apart than this the ends of a window have to be by another clock, to tell clocks.
 constexpr double kTelling_m = 0.15;
 
@@ -40,7 +42,7 @@ using Window = std::vector<WindowScan>;
 
 std::vector<Eigen::Vector3d> some_points(std::span<const Point> points) {
   constexpr double kNearest_m = 1.5, kFarthest_m = 40.0;
-  constexpr std::size_t kMostPoints = 2000;
+  constexpr std::size_t kMostPoints = 1000;
   std::vector<Eigen::Vector3d> near_m;
   for (const Point& point : points) {
     const double range = range_m(point);
@@ -135,9 +137,12 @@ class ClockFitting {
     }
     if (windows_.empty()) return std::nullopt;
     std::array<ClockFit, 2> halves;
-    for (std::size_t half = 0; half < halves.size(); ++half) halves[half] = best_of(half);
+    for (std::size_t half = 0; half < halves.size(); ++half) {
+      halves[half] = best_of(half);
+      if (halves[half].gain < kLeastGain) return std::nullopt;
+    }
     constexpr double kSame_s = 0.05;
-    if (std::abs(halves[0].off_s - halves[1].off_s) > kSame_s) return ClockFit{};
+    if (std::abs(halves[0].off_s - halves[1].off_s) > kSame_s) return std::nullopt;
     return ClockFit{0.5 * (halves[0].off_s + halves[1].off_s),
                     std::min(halves[0].gain, halves[1].gain)};
   }
@@ -265,10 +270,10 @@ class ClockFitting {
 }  // namespace
 
 std::optional<std::string> doubt_about_clock(const Sequence& sequence, const PoseAt& pose_at) {
-  constexpr double kLeast_s = 0.015, kLeastGain = 0.15;
+  constexpr double kLeast_s = 0.015;
   if (!pose_at) return std::nullopt;
   const auto fit = ClockFitting(sequence, pose_at).run();
-  if (!fit || std::abs(fit->off_s) < kLeast_s || fit->gain < kLeastGain) return std::nullopt;
+  if (!fit || std::abs(fit->off_s) < kLeast_s) return std::nullopt;
   return fmt::format(
       "the poses of {:.0f} ms {} the stamps of the scans fit these best, points are {:.1f} times "
       "likelier there: scans and poses are stamped by clocks that differ, or the points were "

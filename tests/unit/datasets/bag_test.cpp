@@ -119,7 +119,7 @@ TEST_F(Bag, SaysThatScansAndPosesAreStampedByTwoClocks) {
   };
   // A bag that was recorded from another one has the recorder's clock elsewhere.
   for (const double recorder_s : {0.0, 0.4, 86400.0}) {
-    for (const double ahead_s : {0.0, -0.3, 0.9}) {
+    for (const double ahead_s : {0.0, -0.3}) {
       const BagSequence one("s", write(bag_of_clocks(ahead_s, recorder_s)), {});
       EXPECT_THAT(one.recording().doubts, testing::IsEmpty()) << ahead_s << " " << recorder_s;
     }

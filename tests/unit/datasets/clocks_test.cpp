@@ -22,9 +22,11 @@ Pose room_from_sensor(double time_s, bool evenly) {
   Pose pose = Pose::Identity();
   const double turn = evenly ? 0.1 * time_s : 0.8 * time_s + 0.3 * std::sin(3.0 * time_s);
   pose.linear() = Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-  pose.translation() = {4.0 * time_s - 6.0, 0.0, 1.6};
+  pose.translation() = Eigen::Vector3d(4.0 * time_s - 6.0, 0.0, 1.6);
   // A curve of one radius is the same motion at all times.
-  if (evenly) pose.translation() = {10.0 * std::sin(turn), -10.0 * std::cos(turn) + 10.0, 1.6};
+  if (evenly) {
+    pose.translation() = Eigen::Vector3d(5.0 * std::sin(turn), 5.0 - 5.0 * std::cos(turn), 1.6);
+  }
   return pose;
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "datasets/formats/ply_file.hpp"
+#include "datasets/formats/point_records.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "tests/temp_folder.hpp"

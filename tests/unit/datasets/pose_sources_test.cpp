@@ -208,34 +208,46 @@ class ManyPoseSources : public PoseSources {
     }
     folder_.write("times.txt", times);
   }
-  std::filesystem::path poses(double factor, double offset_s) const {
+  std::filesystem::path poses(double factor, double offset_s, int per_scan = 1) const {
     std::string rows;
-    for (int k = 0; k < 20; ++k) {
-      rows += std::to_string((10.0 + 0.1 * k) * factor + offset_s) + " 1 0 0 0 0 0 1\n";
+    for (int k = 0; k <= 19 * per_scan; ++k) {
+      rows += std::to_string((10.0 + 0.1 * k / per_scan) * factor + offset_s) + " 1 0 0 0 0 0 1\n";
     }
     return folder_.write("many.txt", rows);
   }
 };
 
 TEST_F(ManyPoseSources, SayByHowMuchAllStampsAreOff) {
-  for (const double offset_s : {0.08, -0.03, 0.02}) {
-    const FolderSequence recording = open({.poses = PoseFile{poses(1.0, offset_s)}});
-    EXPECT_THAT(recording.recording().doubts,
-                Contains(HasSubstr(fmt::format("all stamps of many.txt are {:.1f} ms {} those",
-                                               std::abs(offset_s) * 1e3,
-                                               offset_s > 0 ? "after" : "before"))));
+  const auto doubts = [&](double offset_s, int per_scan) {
+    return open({.poses = PoseFile{poses(1.0, offset_s, per_scan)}}).recording().doubts;
+  };
+  for (const int per_scan : {1, 10}) {  // poses that are denser begin and end with the scans
+    for (const double offset_s : {0.08, -0.03, 0.15}) {
+      EXPECT_THAT(doubts(offset_s, per_scan),
+                  Contains(HasSubstr(fmt::format("all stamps of many.txt are {:.1f} ms {} those",
+                                                 std::abs(offset_s) * 1e3,
+                                                 offset_s > 0 ? "after" : "before"))));
+    }
+    EXPECT_THAT(doubts(0.001, per_scan), testing::Not(Contains(HasSubstr("all stamps"))));
   }
-  EXPECT_THAT(open({.poses = PoseFile{poses(1.0, 0.001)}}).recording().doubts,
-              testing::Not(Contains(HasSubstr("all stamps"))));
+}
+
+TEST_F(ManyPoseSources, TakeStampsInTheUnitOfTheirSteps) {
+  for (const auto& [factor, unit] : {std::pair{1e3, "ms"}, {1e6, "us"}, {1e9, "ns"}}) {
+    const FolderSequence sequence = open({.poses = PoseFile{poses(factor, 0)}});
+    EXPECT_EQ(sequence.size(), 20U) << unit;
+    EXPECT_THAT(sequence.recording().doubts,
+                Contains(fmt::format("the stamps of many.txt are taken as {}", unit)));
+  }
 }
 
 TEST_F(ManyPoseSources, RefuseToGoOnWithFewScansOfMany) {
   const auto error = [&](double factor, double offset_s) {
     return message_of<DataError>([&] { open({.poses = PoseFile{poses(factor, offset_s)}}); });
   };
-  EXPECT_THAT(error(1e3, 0), HasSubstr("stamps in seconds: these fit as milliseconds"));
-  EXPECT_THAT(error(1e6, 0), HasSubstr("these fit as microseconds"));
-  EXPECT_THAT(error(1e9, 0), HasSubstr("is no time in seconds (is it in nanoseconds?)"));
+  const auto dense = poses(1e3, 0, 10);  // 10 may be seconds as well
+  EXPECT_THAT(message_of<DataError>([&] { open({.poses = PoseFile{dense}}); }),
+              HasSubstr("stamps in seconds: these fit as milliseconds"));
   EXPECT_THAT(error(1.0, 37.0), testing::AllOf(HasSubstr("holds poses for 0 of 20 scans"),
                                                HasSubstr("are 37000.0 ms after")));
   EXPECT_THAT(error(1.0, 1.85), HasSubstr("holds poses for 1 of 20 scans"));
