@@ -30,8 +30,9 @@ TEST(PipeMessages, GreetAsDocumented) {
                                   "01000000 00000000"));
   const Greeting with_settings{.settings = R"({"a":1})"};
   EXPECT_EQ(greeting_message(with_settings),
-            "MOShello" + bytes_of("1f00000000000000 02000000 04000000 0000000000000000 "
-                                  "00000000 00000000") +
+            "MOShello" +
+                bytes_of("1f00000000000000 02000000 04000000 0000000000000000 "
+                         "00000000 00000000") +
                 R"({"a":1})");
   EXPECT_FALSE(parse_ready(bytes_of("0200000000000000"), with_settings));
   EXPECT_THROW(parse_ready(bytes_of("0100000000000000"), with_settings), ProgramError);
