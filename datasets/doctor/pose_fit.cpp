@@ -19,8 +19,8 @@ constexpr std::array<std::size_t, 3> kApart = {20, 5, 1};
 /// Farther on, scans may share no more than the traffic that they move with.
 constexpr double kMostApartM = 30.0;
 constexpr std::size_t kMostPlaces = 12;
-/// One place per so many scans costs a run little.
-constexpr std::size_t kScansPerPlace = 15;
+/// One place per so many scans costs a run little. Two places, of shorter runs, say too little.
+constexpr std::size_t kScansPerPlace = 15, kFewestPlaces = 3;
 /// Of a scan; more do not match better. No multiples of a sensor's rows, all of which are picked.
 constexpr std::size_t kPoints = 30011, kPointsInBrief = 15013;
 constexpr double kFitCellM = 1.0;
@@ -99,15 +99,14 @@ std::vector<Place> measured_places(const Sequence& sequence, const std::vector<P
                                    FitDetail detail) {
   const bool brief = detail == FitDetail::kBrief;
   const std::size_t scans = given.size(), farthest = std::min(kApart.front(), (scans - 1) / 2);
-  const std::size_t count =
-      std::min(brief ? scans / kScansPerPlace : scans - farthest, kMostPlaces);
+  const std::size_t most = brief ? scans / kScansPerPlace : scans - farthest;
+  const std::size_t count = most < 2 ? 0 : std::clamp(most, kFewestPlaces, kMostPlaces);
   const auto scan_at = [&](std::size_t scan_index) {
     const std::vector<Point> points = sequence.read(scan_index).points;
     return RegisteredScan(picked(points, brief ? kPointsInBrief : kPoints), kFitCellM);
   };
   std::vector<Place> places;
-  // A single place could be wrong.
-  for (std::size_t i = 0; i < count && count > 1; ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const std::size_t first = i * (scans - 1 - farthest) / (count - 1);
     const RegisteredScan earlier = scan_at(first);
     Place place;

@@ -120,6 +120,34 @@ TEST_F(DoctorCommand, PutsTheFlagThatMendsThePosesIntoTheNextCommand) {
   EXPECT_EQ(mended.exit_code, 0) << mended.out;
 }
 
+TEST_F(DoctorCommand, SaysHowFarOffPosesThatDriftAre) {
+  const std::string drive = (folder_ / "drive").string(), poses = (folder_ / "poses.txt").string();
+  ASSERT_EQ(cli::run({"simulate", "--layout", "semantickitti", "--scene", "street", "--scans", "60",
+                      "--seed", "1301", "--out", drive})
+                .exit_code,
+            0);
+  const std::string sequence = drive + "/sequences/08";
+  const cli::Answer sound = cli::run({"doctor", sequence});
+  EXPECT_EQ(sound.exit_code, 0) << sound.out;
+  EXPECT_THAT(sound.out, HasSubstr("  fit             over 20 scans surfaces are 0."));
+  std::vector<Pose> longer = read_poses(sequence + "/poses.txt");
+  for (Pose& pose : longer) pose.translation() *= 1.02;
+  write_poses(poses, longer);
+  const cli::Answer drifting = cli::run({"doctor", sequence, "--poses", poses});
+  EXPECT_EQ(drifting.exit_code, 1) << drifting.out;
+  EXPECT_THAT(drifting.out, HasSubstr("warning: 08: the poses drift: over 20 scans they put "));
+  EXPECT_THAT(drifting.out, HasSubstr("; expected at most 4 cm: run with --odometry simple\n"));
+  const std::string doubt = "the poses do not fit the scans: over 20 scans they put surfaces ";
+  const std::string out = (folder_ / "out").string();
+  const cli::Answer run = cli::run({"run", sequence, "--poses", poses, "--out", out});
+  EXPECT_THAT(run.out, HasSubstr("08: " + doubt));
+  EXPECT_THAT(run.err, HasSubstr("08: " + doubt));
+  EXPECT_THAT(cli::timeless_result(folder_ / "out/08").at("doubts").at(0).get<std::string>(),
+              testing::StartsWith(doubt));
+  const cli::Answer silent = cli::run({"run", sequence, "--out", (folder_ / "sound").string()});
+  EXPECT_THAT(silent.out, Not(HasSubstr("the poses do not fit")));
+}
+
 TEST_F(DoctorCommand, SaysThatPosesOfFewScansWereNotChecked) {
   cli::write_small_sequence(folder_ / "short", 4);
   const cli::Answer answer = cli::run({"doctor", (folder_ / "short").string()});
