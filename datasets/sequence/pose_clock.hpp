@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/sequence/sequence.hpp"
@@ -13,6 +15,11 @@ namespace mosbench {
 /// where these have no stamps. Throws DataError.
 PoseAt stamped_poses(const std::filesystem::path& folder, const std::string& own_file,
                      const Reading& asked);
+
+/// Returns how far stamps of poses lie behind those of the scans that they belong to, where that is
+/// about the same for all: the poses have the time of another clock, or of their recording.
+std::optional<std::int64_t> constant_offset_ns(const std::vector<std::int64_t>& poses_ns,
+                                               const std::vector<std::int64_t>& scans_ns);
 
 /// Moves the clock of the poses by up to 1.2 s, and looks when some scans, put together by the
 /// poses, have the thinnest surfaces. Returns a sentence where that is at another time than their

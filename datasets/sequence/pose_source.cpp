@@ -34,40 +34,6 @@ PoseTrack track_of(const PoseList& list) {
   return PoseTrack(std::move(stamped));
 }
 
-/// How far poses begin and end after scans do, where that is the same: these are of one drive.
-std::optional<std::int64_t> offset_of_ends_ns(const std::vector<std::int64_t>& poses_ns,
-                                              const std::vector<std::int64_t>& scans_ns) {
-  if (poses_ns.size() < scans_ns.size()) return std::nullopt;
-  const std::int64_t step_ns =
-      (poses_ns.back() - poses_ns.front()) / static_cast<std::int64_t>(poses_ns.size());
-  const std::int64_t first_ns = poses_ns.front() - scans_ns.front(),
-                     last_ns = poses_ns.back() - scans_ns.back();
-  if (std::abs(first_ns - last_ns) > step_ns || std::abs(first_ns + last_ns) <= 2 * step_ns) {
-    return std::nullopt;
-  }
-  return (first_ns + last_ns) / 2;
-}
-
-/// How far stamps of poses lie behind those of the scans that they belong to, where that is about
-/// the same for all: the poses have the time of another clock, or of their recording.
-std::optional<std::int64_t> constant_offset_ns(const std::vector<std::int64_t>& poses_ns,
-                                               const std::vector<std::int64_t>& scans_ns) {
-  constexpr std::size_t kFewest = 5;
-  constexpr std::int64_t kLeast_ns = 5'000'000, kSpread_ns = 2'000'000;
-  if (scans_ns.size() < kFewest) return std::nullopt;
-  if (poses_ns.size() != scans_ns.size()) return offset_of_ends_ns(poses_ns, scans_ns);
-  std::vector<std::int64_t> offsets_ns;
-  for (std::size_t k = 0; k < scans_ns.size(); ++k) {
-    offsets_ns.push_back(poses_ns[k] - scans_ns[k]);
-  }
-  std::ranges::sort(offsets_ns);
-  const std::int64_t middle_ns = offsets_ns[offsets_ns.size() / 2];
-  const std::size_t tenth = offsets_ns.size() / 10;
-  const std::int64_t spread_ns = offsets_ns[offsets_ns.size() - 1 - tenth] - offsets_ns[tenth];
-  if (std::abs(middle_ns) < kLeast_ns || spread_ns > kSpread_ns) return std::nullopt;
-  return middle_ns;
-}
-
 /// The unit in which stamps that were read as seconds fit those of the scans; empty for none.
 std::string fitting_unit(const std::vector<std::int64_t>& poses_ns,
                          const std::vector<std::int64_t>& scans_ns) {
