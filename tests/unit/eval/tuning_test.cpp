@@ -39,7 +39,7 @@ std::string tuning_with(const std::string& what, const std::string& by) {
   return text.replace(at, what.size(), by);
 }
 
-void score(PlannedCell& planned, double iou) {
+void enter_score(PlannedCell& planned, double iou) {
   const auto moving = static_cast<std::uint64_t>(std::llround(1000 * iou));
   planned.state = CellState::kDone;
   planned.numbers = {};
@@ -59,7 +59,7 @@ struct ScoredTuning {
       if (set.find("max_range_m=20") != std::string::npos) iou += 0.2;
       if (set.find("local_window_scans=2") != std::string::npos) iou += 0.1;
       if (planned.cell.data->name == "room-3") iou = 0.9 - iou / 2;
-      score(planned, iou);
+      enter_score(planned, iou);
     }
   }
   PlannedCell& cell(const std::string& title) {
@@ -142,7 +142,7 @@ TEST(StudyTuningChoice, IsTheBestOfTuneOnAndJudgedElsewhere) {
 
 TEST(StudyTuningChoice, TakesTheFirstOfEquals) {
   ScoredTuning scored;
-  for (PlannedCell& planned : scored.plan.cells) score(planned, 0.5);
+  for (PlannedCell& planned : scored.plan.cells) enter_score(planned, 0.5);
   EXPECT_EQ(to_words(gather(scored.plan).choices[0].preset->settings),
             "min_range_m=1,max_range_m=10,local_window_scans=3");
 }
