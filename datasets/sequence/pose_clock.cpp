@@ -200,11 +200,16 @@ class ClockFitting {
     Window window;
     const std::size_t all = end_of(first) - first, step = (all + kMostScans - 1) / kMostScans;
     for (std::size_t k = first; k < first + all; k += std::max<std::size_t>(step, 1)) {
-      const Frame frame = sequence_.read(k);
-      const auto pose = pose_at_(*sequence_.stamp_ns(k));
-      if (!pose) continue;
-      window.push_back({*sequence_.stamp_ns(k), pose->inverse() * frame.map_from_sensor,
-                        some_points(frame.points)});
+      Frame frame = sequence_.read(k);
+      const std::int64_t stamp_ns = *sequence_.stamp_ns(k);
+      const auto pose = pose_at_(stamp_ns);
+      // Points that are moved later are moved here.
+      if (!pose || (!frame.point_times_ns.empty() &&
+                    !undistort(frame.points, frame.point_times_ns, stamp_ns, stamp_ns, pose_at_))) {
+        continue;
+      }
+      window.push_back(
+          {stamp_ns, pose->inverse() * frame.map_from_sensor, some_points(frame.points)});
     }
     return window;
   }
