@@ -25,7 +25,7 @@ std::string bytes_of(const std::string& hex) {
 }
 
 TEST(PipeMessages, GreetAsDocumented) {
-  EXPECT_EQ(greeting_message({.scans = 258, .wants_scores = true}),
+  EXPECT_EQ(greeting_message({.scans = 258, .wants_scores = true, .settings = {}}),
             "MOShello" + bytes_of("1800000000000000 01000000 04000000 0201000000000000 "
                                   "01000000 00000000"));
   const Greeting with_settings{.settings = R"({"a":1})"};

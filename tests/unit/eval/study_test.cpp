@@ -259,6 +259,8 @@ void mark_done(PlannedCell& planned, double iou, double ms) {
   planned.state = CellState::kDone;
   planned.numbers = {.version = std::string(kMosbenchVersion),
                      .simulated = true,
+                     .simulation = {},
+                     .fingerprint = {},
                      .counts = {Confusion{.tp = moving, .fp = 1000 - moving}},
                      .gaps = {},
                      .metrics = {iou, 0.5, std::nullopt},
