@@ -191,6 +191,8 @@ class PlusTwin final : public Method {
       const Cell* c = find(map_, u);
       if (!is_known(c)) return false;
       if (arrived && c->left && tick_ - c->left_at <= 5) return true;
+      if (!arrived && c->state == kOccupied && c->arrived && tick_ - c->arrived_at <= 5)
+        return true;
       return c->state == kOccupied && c->occupied_ticks >= 8 && !young(*c);
     });
     const auto known = [&](const Voxel& u) { return is_known(find(map_, u)); };
@@ -327,9 +329,22 @@ class PlusTwin final : public Method {
         voxels += static_cast<double>(seen.voxels.size());
         arrived += seen.arrived, settled += seen.settled_beside;
       }
-      component.moves = component.steady_steps >= 2 || settled <= c_.max_settled_share * voxels ||
-                        arrived >= 0.8 * voxels;
+      const bool is_attached = settled > c_.max_settled_share * voxels && arrived < 0.8 * voxels;
+      component.moves =
+          component.steady_steps >= 2 || !(is_attached || is_doubtful(scan, component.voxels));
     }
+  }
+
+  /// New, and came into view, or is small.
+  bool is_doubtful(const Scan& scan, const SetOf& voxels) const {
+    const int reach = std::min(8, static_cast<int>(0.6 / c_.map.voxel_size_m));
+    const auto size = static_cast<double>(voxels.size());
+    const auto arrived = static_cast<double>(
+        std::ranges::count_if(voxels, [&](const Voxel& v) { return scan.arrived.contains(v); }));
+    const bool is_new = std::ranges::none_of(seen_, [&](const Seen& seen) {
+      return seen.tick != scan.tick && gap_between(seen.voxels, voxels) <= reach;
+    });
+    return is_new && scan.tick >= 8 && (arrived < 0.3 * size || size < c_.min_seeds_voxels);
   }
 
   /// Between the boxes around voxels, along the axis where it is widest.

@@ -11,8 +11,9 @@ namespace {
 
 /// The neighbours of a seed that should be known: a cube of 5^3 voxels.
 constexpr int kCubeVoxels = 125;
-/// A surface that left a voxel so short a time ago may be beside it by noise alone.
-constexpr std::uint32_t kLeftTicks = 5;
+/// A surface that left a voxel so short a time ago may be beside it by noise alone, and one that
+/// arrived may be what left beside it.
+constexpr std::uint32_t kTurnedTicks = 5;
 
 /// The evidence that makes a voxel a seed.
 enum class Evidence { kArrival, kDeparture };
@@ -22,7 +23,7 @@ std::uint32_t ticks_of(double age_s) {
 }
 
 /// Returns, of the blocks around raw[slots], the settled voxels that did not arrive of late; for
-/// arrivals also those that were just left.
+/// arrivals also those that were just left, for departures those that just arrived.
 VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
                      const std::vector<std::uint32_t>& slots, const RememberedMap& map,
                      std::uint32_t seed_age_ticks, Evidence evidence) {
@@ -39,10 +40,11 @@ VoxelSet firm_voxels(const VoxelizedScan& scan, const ScanMasks& raw,
     const BlockMask settled = past->history.settled() & past->known.occupied;
     const BlockMask of_late = past->history.sure_within(settled, seed_age_ticks, past->tick);
     firm.masks[i] = without(settled, of_late);
-    if (evidence == Evidence::kArrival) {
-      firm.masks[i] =
-          firm.masks[i] | past->history.left_within(past->known.free, kLeftTicks, past->tick);
-    }
+    const BlockMask turned =
+        evidence == Evidence::kArrival
+            ? past->history.left_within(past->known.free, kTurnedTicks, past->tick)
+            : past->history.arrived_within(past->known.occupied, kTurnedTicks, past->tick);
+    firm.masks[i] = firm.masks[i] | turned;
   }
   return firm;
 }

@@ -13,6 +13,8 @@ constexpr std::uint32_t kSeenTicks = 10;
 /// An object that moves arrived by this share or more. The rest came into view or is one with what
 /// it touches.
 constexpr double kArrivedShare = 0.8;
+/// What is new and arrived by less came into view.
+constexpr double kNewArrivedShare = 0.3;
 
 /// What was followed at a steady velocity over so many steps is no part of what stands.
 constexpr int kSteadySteps = 2;
@@ -36,7 +38,8 @@ bool are_within(int reach, const Box& a, const Box& b) {
 
 Attachments::Attachments(const Config& config)
     : reach_(std::min(static_cast<int>(kReach_m / config.map.voxel_size_m), kMaxHalo)),
-      max_settled_share_(config.max_settled_share) {}
+      max_settled_share_(config.max_settled_share),
+      min_voxels_(static_cast<std::size_t>(config.min_seeds_voxels)) {}
 
 Attachments::Seen Attachments::look_at(const VoxelizedScan& scan, const ArrivalClasses& classes,
                                        LowVoxels& low, const Component& component) const {
@@ -67,6 +70,17 @@ bool Attachments::is_attached(const Seen& component) const {
   return settled > max_settled_share_ * voxels && arrived < kArrivedShare * voxels;
 }
 
+/// Whether nothing was near before that tells more. In the beginning everything comes into view.
+bool Attachments::is_doubtful(const Seen& component) const {
+  const auto arrived = static_cast<double>(component.arrived);
+  const bool came_into_view = arrived < kNewArrivedShare * static_cast<double>(component.voxels) ||
+                              component.voxels < min_voxels_;
+  return came_into_view && component.at >= BlockHistory::kSettledTicks &&
+         std::ranges::none_of(seen_, [&](const Seen& seen) {
+           return seen.at != component.at && are_within(reach_, seen.box, component.box);
+         });
+}
+
 void Attachments::judge(const VoxelizedScan& scan, const ArrivalClasses& classes, LowVoxels& low,
                         std::uint32_t at, std::vector<Component>& components) {
   while (!seen_.empty() && at - seen_.front().at > kSeenTicks) seen_.pop_front();
@@ -79,8 +93,9 @@ void Attachments::judge(const VoxelizedScan& scan, const ArrivalClasses& classes
   std::size_t next = before;
   for (Component& component : components) {
     if (!component.moves) continue;
-    component.moves = component.steady_steps >= kSteadySteps || !is_attached(seen_[next]);
-    ++next;
+    const Seen& seen = seen_[next++];
+    component.moves =
+        component.steady_steps >= kSteadySteps || (!is_attached(seen) && !is_doubtful(seen));
   }
 }
 

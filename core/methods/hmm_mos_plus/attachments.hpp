@@ -14,7 +14,8 @@ namespace mosbench::hmm_mos_plus {
 
 /// Tells what is part of a surface that has been standing: it lies beside settled voxels, and much
 /// of it did not arrive. Parts of a parked car that come into view are seen one after the other, so
-/// it sums what lay near in the last second.
+/// it sums what lay near in the last second. What is new and came into view, or is small, waits for
+/// a second scan.
 class Attachments {
  public:
   explicit Attachments(const Config& config);
@@ -37,10 +38,12 @@ class Attachments {
   Seen look_at(const VoxelizedScan& scan, const ArrivalClasses& classes, LowVoxels& low,
                const Component& component) const;
   bool is_attached(const Seen& component) const;
+  bool is_doubtful(const Seen& component) const;
 
   int reach_;  // voxels
   double max_settled_share_;
-  std::deque<Seen> seen_;  // of the last second
+  std::size_t min_voxels_;  // of what is new
+  std::deque<Seen> seen_;   // of the last second
 };
 
 }  // namespace mosbench::hmm_mos_plus

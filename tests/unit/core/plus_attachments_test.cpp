@@ -1,0 +1,96 @@
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "core/methods/hmm_mos_plus/attachments.hpp"
+
+namespace mosbench::hmm_mos_plus {
+namespace {
+
+/// A row of ten voxels along x that is a component, and rows beside it that are settled.
+struct RowBesideOthers {
+  int voxels = 10, arrived = 0;
+  int settled = 10, settled_at_y = 2;  ///< 0.6 m are two voxels
+  int steady_steps = 0;
+  bool low = false;
+};
+
+/// Whether a row moves in the last of some scans, each with its tick.
+bool moves_last(const std::vector<std::pair<std::uint32_t, RowBesideOthers>>& scans) {
+  Config config;
+  config.map.voxel_size_m = 0.25;
+  config.ground_radius_voxels = kBlockSide;
+  Attachments attachments(config);
+  bool moves = false;
+  for (const auto& [at, row] : scans) {
+    VoxelizedScan scan;
+    const auto add = [&](const Voxel& v) {
+      const std::uint32_t slot = scan.measured.insert(block_of(v));
+      scan.measured.masks[slot].set(cell_of(v));
+      return slot;
+    };
+    Component component{.voxels = {}, .moves = true, .steady_steps = row.steady_steps};
+    for (int x = 0; x < row.voxels; ++x) {
+      component.voxels.push_back(add({x, 0, 0}) * kBlockVoxels + cell_of({x, 0, 0}));
+    }
+    for (int x = 0; x < row.settled; ++x) add({x, row.settled_at_y, 0});
+    for (int x = 0; x < 10; x += 5) add({x, 0, row.low ? 0 : -20});
+    scan.occupied = scan.measured.masks;
+    const ScanMasks none(scan.occupied.size());
+    ArrivalClasses classes{none, none, none, none, none, none};
+    for (int x = 0; x < row.arrived; ++x) {
+      classes.arrived[scan.measured.find(block_of({x, 0, 0}))].set(cell_of({x, 0, 0}));
+    }
+    for (int x = 0; x < row.settled; ++x) {
+      const Voxel v{x, row.settled_at_y, 0};
+      classes.settled[scan.measured.find(block_of(v))].set(cell_of(v));
+    }
+    const Ground ground(scan, config);
+    LowVoxels low(scan, ground);
+    std::vector<Component> components = {component};
+    attachments.judge(scan, classes, low, at, components);
+    moves = components.front().moves;
+  }
+  return moves;
+}
+
+bool moves(const RowBesideOthers& row) { return moves_last({{0, row}}); }
+
+TEST(PlusAttachments, ArePartOfWhatStandsUnlessTheyArrived) {
+  EXPECT_FALSE(moves({.arrived = 0}));
+  EXPECT_FALSE(moves({.arrived = 7}));
+  EXPECT_TRUE(moves({.arrived = 8}));
+}
+
+TEST(PlusAttachments, HaveEnoughSettledVoxelsNearThatAreNotLow) {
+  EXPECT_TRUE(moves({.settled = 3}));
+  EXPECT_FALSE(moves({.settled = 4}));
+  EXPECT_FALSE(moves({.settled_at_y = -2}));
+  EXPECT_TRUE(moves({.settled_at_y = 3}));
+  EXPECT_TRUE(moves({.low = true}));
+}
+
+TEST(PlusAttachments, DoNotGoOnSteadily) {
+  EXPECT_FALSE(moves({.steady_steps = 1}));
+  EXPECT_TRUE(moves({.steady_steps = 2}));
+}
+
+TEST(PlusAttachments, AreToldByWhatWasNearInTheLastSecond) {
+  const RowBesideOthers standing{.arrived = 0}, arrived{.voxels = 9, .arrived = 9, .settled = 0};
+  EXPECT_TRUE(moves_last({{0, arrived}}));
+  EXPECT_FALSE(moves_last({{0, standing}, {10, arrived}}));
+  EXPECT_TRUE(moves_last({{0, standing}, {11, arrived}}));
+}
+
+TEST(PlusAttachments, WaitForASecondScanWhereTheyCameIntoView) {
+  const RowBesideOthers seen{.arrived = 2, .settled = 0}, small{.voxels = 2, .arrived = 2};
+  EXPECT_TRUE(moves_last({{7, seen}})) << "in the beginning everything comes into view";
+  EXPECT_FALSE(moves_last({{8, seen}}));
+  EXPECT_TRUE(moves_last({{8, seen}, {9, seen}}));
+  EXPECT_TRUE(moves_last({{8, {.arrived = 3, .settled = 0}}}));
+  EXPECT_FALSE(moves_last({{8, small}}));
+  EXPECT_TRUE(moves_last({{8, small}, {9, small}}));
+}
+
+}  // namespace
+}  // namespace mosbench::hmm_mos_plus
