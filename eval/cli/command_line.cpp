@@ -162,10 +162,12 @@ std::string commands_with_odometry(const CLI::App& command, std::vector<std::str
     return typed_line(arguments) + " --odometry simple";
   }
   if (command.get_option_no_throw("--poses") == nullptr) return "";
+  // Poses are found for all scans, so that rows without stamps are those of a part, too.
   const auto chooses_scans = [](const CLI::Option& option) {
     const std::string name = option.get_name();
-    return name != kRefines && (option.get_group() == kReadingGroup || name == "DATA" ||
-                                name == "--dataset" || name == "--sequences");
+    return name != kRefines && name != "--scans" &&
+           (option.get_group() == kReadingGroup || name == "DATA" || name == "--dataset" ||
+            name == "--sequences");
   };
   // A file for one sequence, a folder for several: `--poses` takes either.
   constexpr std::string_view kFoundPoses = "found-poses";

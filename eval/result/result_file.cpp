@@ -118,7 +118,9 @@ void upgrade_places(ordered_json& content) {
   for (const char* key : {"dataset_root", "file_stamp", "sequences_of_run"}) {
     move_member(old, key, places, key);
   }
-  places["reading"] = told_json(told_from_json(old));
+  ordered_json flags = old;
+  flags.erase("scans");  // the measurements of scans: format 2 knew no range of them
+  places["reading"] = told_json(told_from_json(flags));
   if (is_scored) {
     ordered_json& source = places["predictions"] = ordered_json::object();
     move_member(old, "predictions", source, "path");

@@ -136,7 +136,7 @@ TEST_F(DoctorCommand, SaysHowFarOffPosesThatDriftAre) {
   const cli::Answer drifting = cli::run({"doctor", sequence, "--poses", poses});
   EXPECT_EQ(drifting.exit_code, 1) << drifting.out;
   EXPECT_THAT(drifting.out, HasSubstr("warning: 08: the poses drift: over 20 scans they put "));
-  EXPECT_THAT(drifting.out, HasSubstr("; expected at most 4 cm: run with --odometry simple\n"));
+  EXPECT_THAT(drifting.out, HasSubstr("; expected at most 4 cm: run with --refine-poses\n"));
   const std::string doubt = "the poses do not fit the scans: over 20 scans they put surfaces ";
   const std::string out = (folder_ / "out").string();
   const cli::Answer run = cli::run({"run", sequence, "--poses", poses, "--out", out});

@@ -109,7 +109,7 @@ TEST(Help, ListsTheValuesOfAFlagAndNamesThoseOfAList) {
   const std::string run = cli::run({"run", "--help-all"}).out;
   for (const char* part : {"\n  --odometry {simple,kiss}", "\n  --write WHAT,...  ",
                            "Also write scores, boxes, moving-cloud, static-cloud,\n",
-                           "\nReading:\n  --topic", "\nKeys of --read:\n  pose_format "}) {
+                           "\nReading:\n  --scans", "\nKeys of --read:\n  pose_format "}) {
     EXPECT_THAT(run, HasSubstr(part));
   }
   const std::string simulate = cli::run({"simulate", "--help"}).out;

@@ -263,7 +263,7 @@ TEST_F(Writers, RefuseNamesOfOtherKindsOfFiles) {
   EXPECT_THAT(fault_of("x.pdf", {"report", out_}), HasSubstr("ends in .html or .htm"));
   EXPECT_THAT(fault_of("x.pdf", {"rank", out_}), HasSubstr("ends in .txt"));
   EXPECT_THAT(fault_of("x.csv", {"rank", out_, "--as", "json"}), HasSubstr("ends in .json"));
-  EXPECT_THAT(fault_of("x.csv", {"compare", out_, out_}), HasSubstr("ends in .md"));
+  EXPECT_THAT(fault_of("x.pdf", {"compare", out_, out_}), HasSubstr("ends in .md"));
 }
 
 TEST_F(Writers, NameTheFileAndWhatItLacks) {
