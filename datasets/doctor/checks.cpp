@@ -20,7 +20,7 @@ constexpr const char* kPosesDoNotFit =
     "{off_m:.2f} m (median of {motions}), and scans overlap by {overlap:.2f} instead of "
     "{best_overlap:.2f}; expected the poses of this sequence";
 constexpr const char* kPosesAreOff =
-    "the poses {pose_fit_kind}: over {fit_scans} scans they put surfaces 10 m away "
+    "the poses {pose_fit_kind}: over {fit_scans} they put surfaces 10 m away "
     "{fit_10_cm:.1f} cm and 30 m away {fit_30_cm:.1f} cm off (median of {places} places, scan "
     "matching errs by {match_cm:.1f} cm), worst from {worst_fit}, {worst_fit_cm:.1f} cm; expected "
     "at most {most_off_cm:.0f} cm: run with {cure}";

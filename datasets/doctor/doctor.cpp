@@ -141,7 +141,7 @@ class Examination {
       part.remarks.insert(part.remarks.end(), doubts.begin(), doubts.end());
       part.labelled_scans = scans_with_truth(sequence).size();
       part.facts = folder_facts_[folders[i].name];
-      part.has_poses = !options.reading.is_by_odometry() && !options.reading.is_static();
+      part.has_poses = !options.reading.is_by_odometry();
       check_points(sequence, folder, expected, part);
       if (!part.has_poses) continue;
       check_poses(sequence, folder, part);

@@ -10,6 +10,7 @@
 
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {
@@ -163,13 +164,15 @@ void examine_pose_fit(const Sequence& sequence, const std::vector<Pose>& given, 
       median_cm(places, [](const auto& place) { return place.front().matched.at_10_m; });
   facts["step_fit_cm"] =
       median_cm(places, [](const auto& place) { return place.back().given.at_10_m; });
-  facts["fit_scans"] = worst.pair.later - worst.pair.earlier;
+  facts["fit_scans"] = counted(worst.pair.later - worst.pair.earlier, "scan");
   facts["worst_fit_cm"] = 100.0 * worst.given.at_10_m;
   facts["worst_fit"] = fmt::format("scan {} to {}", sequence.stem(worst.pair.earlier),
                                    sequence.stem(worst.pair.later));
   facts["most_off_cm"] = 100.0 * kOff10M;
   facts["pose_fit_kind"] = facts.told(kind_of(facts, detail));
-  facts["cure"] = option("refine_poses");
+  const ReadingDone& reading = sequence.reading();
+  const bool can_refine = reading.poses.source != kStaticPoses && !reading.poses.refined;
+  facts["cure"] = can_refine ? option("refine_poses") : option("odometry", "simple");
 }
 
 std::optional<std::string> doubt_about_pose_fit(const Sequence& sequence) {

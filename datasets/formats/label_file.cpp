@@ -11,7 +11,6 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
-#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {
@@ -110,9 +109,15 @@ void check_label_count(std::size_t labels, std::size_t point_count,
                   fmt::format("one for each of the {} points of its scan", point_count));
 }
 
+std::vector<TextLine> table_lines(std::string_view text, const std::filesystem::path& file) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  return split_lines(text, file);
+}
+
 std::vector<std::uint32_t> parse_point_csv(std::string_view text, std::size_t point_count,
                                            const std::filesystem::path& file) {
-  const std::vector<TextLine> lines = split_lines(text, file);
+  const std::vector<TextLine> lines = table_lines(text, file);
   if (lines.empty()) throw DataError(file, "is empty", "a header and rows");
   const std::vector<std::string_view> header = split_at_commas(lines.front().text);
   const auto named = [&](std::string_view name) { return std::ranges::find(header, name); };

@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "datasets/text/text.hpp"
+
 namespace mosbench {
 
 /// Returns raw label ids stored as little-endian uint32, one per point: the class in the lower 16
@@ -32,6 +34,9 @@ std::vector<std::uint32_t> label_ids(std::span<const double> numbers,
 /// Throws DataError unless there is one label per point.
 void check_label_count(std::size_t labels, std::size_t point_count,
                        const std::filesystem::path& file);
+
+/// Returns the lines of a table, of one that Excel wrote without its mark of UTF-8.
+std::vector<TextLine> table_lines(std::string_view text, const std::filesystem::path& file);
 
 /// Parses labels from a CSV file with a row per point and a header with a column `label` (ids) or
 /// `moving` (0 or 1); other columns are ignored. Throws DataError with the line.

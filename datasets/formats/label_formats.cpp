@@ -4,8 +4,12 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <mosbench/scan.hpp>
+#include <array>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/label_file.hpp"
@@ -14,6 +18,7 @@
 #include "datasets/formats/ply_file.hpp"
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -41,6 +46,14 @@ std::vector<std::uint32_t> labels_of(const NumpyArray& array, const fs::path& fi
   return labels;
 }
 
+/// By the ids, 0 and 1 are no truth: no point with them counts.
+void refuse_classes(const std::vector<std::uint32_t>& labels, const fs::path& file) {
+  if (labels.empty() || std::ranges::max(labels) != 1) return;
+  throw DataError(file, "holds the labels 0 and 1 alone",
+                  "label ids (9 static, 251 moving), a .npy array of booleans, or a column moving "
+                  "in a .csv file");
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> read_cloud_labels(const fs::path& file) {
@@ -51,9 +64,10 @@ std::vector<std::uint32_t> read_cloud_labels(const fs::path& file) {
 std::vector<std::uint32_t> read_any_labels(const fs::path& file, std::size_t point_count) {
   const fs::path extension = file.extension();
   if (extension == ".label") return read_labels(file, point_count);
-  if (extension == ".csv") return parse_point_csv(read_file(file), point_count, file);
   std::vector<std::uint32_t> labels;
-  if (is_named_as_scan(file)) {
+  if (extension == ".csv") {
+    labels = parse_point_csv(read_file(file), point_count, file);
+  } else if (is_named_as_scan(file)) {
     labels = read_cloud_labels(file);
   } else {
     std::string bytes = read_file(file);
@@ -61,7 +75,38 @@ std::vector<std::uint32_t> read_any_labels(const fs::path& file, std::size_t poi
     labels = labels_of(parse_npy(bytes, file), file);
   }
   check_label_count(labels.size(), point_count, file);
+  refuse_classes(labels, file);
   return labels;
+}
+
+std::vector<Point> points_of_labels(const fs::path& file) {
+  if (is_named_as_scan(file)) return read_scan(file);
+  if (file.extension() != ".csv") return {};
+  const std::string text = read_file(file);
+  const std::vector<TextLine> lines = table_lines(text, file);
+  std::vector<std::size_t> columns;
+  if (!lines.empty()) {
+    const std::vector<std::string_view> header = split_at_commas(lines.front().text);
+    for (const std::string_view name : {"x", "y", "z"}) {
+      const auto column = std::ranges::find(header, name);
+      if (column == header.end()) return {};
+      columns.push_back(static_cast<std::size_t>(column - header.begin()));
+    }
+  }
+  std::vector<Point> points;
+  for (const TextLine& line : std::span(lines).subspan(lines.empty() ? 0 : 1)) {
+    const std::vector<std::string_view> fields = split_at_commas(line.text);
+    std::array<float, 3> at{};
+    for (std::size_t axis = 0; axis < at.size(); ++axis) {
+      const auto number =
+          columns[axis] < fields.size() ? parse_double(fields[columns[axis]]) : std::nullopt;
+      if (!number)
+        throw DataError(file, line.number, "has no number in x, y or z", "three numbers");
+      at[axis] = static_cast<float>(*number);
+    }
+    points.push_back({at[0], at[1], at[2], 0.0F});
+  }
+  return points;
 }
 
 void check_labels_fit(const fs::path& file, std::size_t point_count) {

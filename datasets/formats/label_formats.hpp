@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <mosbench/scan.hpp>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +21,10 @@ std::vector<std::uint32_t> read_any_labels(const std::filesystem::path& file,
 
 /// Reads the labels of a .pcd or .ply cloud. Throws DataError, also when it has none.
 std::vector<std::uint32_t> read_cloud_labels(const std::filesystem::path& file);
+
+/// Returns where a file of labels says that its points are: a cloud, or a .csv file with columns x,
+/// y and z; else nothing. Throws DataError.
+std::vector<Point> points_of_labels(const std::filesystem::path& file);
 
 /// Throws DataError where the size or the header of a file shows that it does not fit its scan.
 void check_labels_fit(const std::filesystem::path& file, std::size_t point_count);

@@ -366,8 +366,8 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
   dataset.splits = layout.splits != nullptr
                        ? layout.splits(folders, dataset.sequences, dataset.remarks)
                        : named_splits(layout, folders);
-  if (options.reading.scans) keep_range(dataset, *options.reading.scans);
   if (options.reading.perturb) perturb(dataset, options.reading);
+  if (options.reading.scans) keep_range(dataset, *options.reading.scans);
   if (options.reading.refine_poses) refine(dataset, options.reading, refined);
   return dataset;
 }

@@ -69,7 +69,8 @@ void KittiSequence::pair_labels() {
 void KittiSequence::check_same_points(std::size_t scan_index) const {
   constexpr float kSame_m = 0.01F;  // clouds are written with a few digits
   const std::filesystem::path& file = label_files_[scan_index];
-  const std::vector<Point> scan = read_points(scan_index), labelled = read_scan(file);
+  if (file.extension() != ".csv" && !is_named_as_scan(file)) return;
+  const std::vector<Point> scan = read_points(scan_index), labelled = points_of_labels(file);
   for (std::size_t i = 0; i < std::min(scan.size(), labelled.size()); ++i) {
     const Eigen::Vector3f at(scan[i].x, scan[i].y, scan[i].z);
     const Eigen::Vector3f other(labelled[i].x, labelled[i].y, labelled[i].z);
@@ -84,7 +85,7 @@ std::vector<std::uint32_t> KittiSequence::read_truth(std::size_t scan_index) con
   if (!has_truth(scan_index)) refuse_truth(scan_index);
   if (label_folder_.empty()) return read_cloud_labels(*scan_file(scan_index));
   const std::filesystem::path& file = label_files_[scan_index];
-  if (is_named_as_scan(file)) check_same_points(scan_index);
+  check_same_points(scan_index);
   return layout_.read_labels(file, point_count(scan_index));
 }
 

@@ -157,9 +157,10 @@ concept IsReading = std::same_as<std::remove_const_t<Record>, Reading>;
 /// and help follow from it. Calls visit(name, field, what is legal, meaning).
 template <IsReading Asked, typename Visit>
 void visit_fields(Asked& reading, Visit&& visit) {
-  visit("scans", reading.scans, FieldText{"FROM:TO:STEP"},
-        "Only these scans of each sequence, counted from 0, TO not among them; each part may be "
-        "left out, and N means :N (default: all)");
+  visit(
+      "scans", reading.scans, FieldText{"RANGE"},
+      "Only scans FROM:TO:STEP of each sequence, counted from 0, TO not among them; each part may "
+      "be left out, and N means :N (default: all)");
   visit("poses", reading.poses, FieldText{"FILE"},
         "Pose file to take instead of the sequence's own, a folder with one per sequence, or "
         "static: the sensor stands still");

@@ -42,7 +42,7 @@ class SequencePart : public SequenceAround {
  private:
   [[noreturn]] void refuse(const ScanRange& range) const {
     throw UsageError(
-        fmt::format("{}: chooses no scan of sequence {}, which has {}, expected some of {} to {}",
+        fmt::format("{} chooses no scan of sequence {}, which has {}, expected some of {} to {}",
                     option("scans", to_string(range)), name(), counted(size(), "scan"),
                     scan(0).number.value_or(0), scan(size() - 1).number.value_or(size() - 1)));
   }
@@ -93,6 +93,8 @@ std::string to_string(const ScanRange& range) {
 }
 
 std::unique_ptr<Sequence> with_scan_range(std::unique_ptr<Sequence> inner, const ScanRange& range) {
+  const std::size_t all = inner->size() + inner->recording().left_out.size();
+  if (range.from == 0 && range.step == 1 && range.to.value_or(all) >= all) return inner;
   return std::make_unique<SequencePart>(std::move(inner), range);
 }
 

@@ -28,7 +28,8 @@ ScanRange parse_scan_range(std::string_view text);
 std::string to_string(const ScanRange& range);
 
 /// Returns the sequence with only the scans in the range, which its recording says. Each keeps its
-/// name, pose and truth; scans without a pose count, too. Throws UsageError when there is none.
+/// name, pose and truth; scans without a pose count, too. Returns it as it is where all are in the
+/// range. Throws UsageError when none is.
 std::unique_ptr<Sequence> with_scan_range(std::unique_ptr<Sequence> inner, const ScanRange& range);
 
 }  // namespace mosbench

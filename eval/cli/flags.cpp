@@ -239,6 +239,10 @@ std::vector<std::pair<std::string, std::string>> key_values(std::string_view fla
 }
 
 std::string flag_words(std::string_view name, std::string_view value) {
+  const auto field = std::ranges::find(reading_fields(), name, &ReadingField::name);
+  if (field != reading_fields().end() && field->is_rare) {
+    return fmt::format("--read {}{}{}", name, value.empty() ? "" : "=", value);
+  }
   return flag_of(name) + (value.empty() ? "" : " ") + std::string(value);
 }
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/base/thread_pool.hpp"
+#include "datasets/perturb/perturbation.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
@@ -35,7 +36,11 @@ void take_out(const std::string& text, OdometryFlags& flags) {
 std::string next_command(const OdometryFlags& flags) {
   Data data = data_of(flags);
   data.reading.poses = PoseFile{flags.files.out};
-  data.reading.refine_poses = false;
+  // Poses that were refined would be disturbed once more.
+  if (std::exchange(data.reading.refine_poses, false) && data.reading.perturb &&
+      !changes_points_only(*data.reading.perturb)) {
+    data.reading.perturb.reset();
+  }
   data.reading.pose_frame = PoseFrame::kLidar;
   return fmt::format("use them with\n  mosbench run {}\n", to_words(data));
 }

@@ -158,6 +158,11 @@ Words filled_in(const OldCommand& old, const Words& arguments, const TakesValue&
     if (!is_flag || i + 1 == arguments.size()) continue;
     if (takes_value(today, word) || takes_value(before, word)) flags.push_back(arguments[++i]);
   }
+  const auto is_help = [](const std::string& word) {
+    return word == "--help" || word == "--help-all" || word == "-h";
+  };
+  const auto help = std::ranges::find_if(flags, is_help);
+  if (help != flags.end()) return {today, *help};
   if (old.arguments != 0 && free.size() != old.arguments) return {};
   // How many have a place of their own.
   std::size_t placed =

@@ -229,7 +229,14 @@ Result asked_result(const RunPlan& plan, std::size_t position) {
   asked.kind = settings.method->name;
   asked.settings = RecordedSettings(settings.method_settings);
   asked.preset = plan.preset;
-  if (plan.job.segment.tuned) asked.settings_from = plan.job.segment.tuned->title();
+  if (const auto& tuned = plan.job.segment.tuned) {
+    asked.settings_from = tuned->title();
+    for (const SettingChange& change : tuned->settings) {
+      const SettingValue* value = asked.settings->find(change.name);
+      if (value == nullptr || *value == change.value) continue;
+      asked.settings_from += fmt::format("; here {}", to_words({{change.name, *value}}));
+    }
+  }
   asked.protocol = settings.protocol;
   asked.range = settings.range;
   asked.from.version = kMosbenchVersion;

@@ -50,12 +50,14 @@ TunedPreset parsed(const ordered_json& json) {
 
 }  // namespace
 
-std::string TunedPreset::title() const {
+std::string TunedPreset::words() const {
   const auto labels = tuned_on | std::views::transform(&TunedSequence::label);
-  return fmt::format("{}: preset {} with {}, tuned on {} by {} (study {})", file.string(),
+  return fmt::format("preset {} with {}, tuned on {} by {} (study {})",
                      base != nullptr ? base->name : "of the data set", to_words(settings),
                      fmt::join(labels, ", "), metric, study);
 }
+
+std::string TunedPreset::title() const { return fmt::format("{}: {}", file.string(), words()); }
 
 ordered_json to_json(const TunedPreset& preset) {
   ordered_json settings = ordered_json::object(), tuned_on = ordered_json::array();

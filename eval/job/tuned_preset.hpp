@@ -27,8 +27,9 @@ struct TunedPreset {
   std::string metric, study;
   std::vector<TunedSequence> tuned_on;
 
-  /// Returns "best.json: preset semantickitti with max_range_m=30, tuned on a 08, b 08 by iou
-  /// (study mine)".
+  /// Returns "preset semantickitti with max_range_m=30, tuned on a 08, b 08 by iou (study mine)".
+  std::string words() const;
+  /// Returns "best.json: " and the words.
   std::string title() const;
 };
 

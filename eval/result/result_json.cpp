@@ -298,6 +298,7 @@ ordered_json identity_json(const Result& result) {
                        {"method", method_json(result)},
                        {"protocol", rule_json({result.protocol, result.range}, "name")}};
   if (result.settings) json["settings"] = to_json(*result.settings);
+  if (!result.settings_from.empty()) json["settings_from"] = result.settings_from;
   json["code"] = {{"version", result.from.version}, {"compiler", result.from.compiler}};
   return json;
 }

@@ -48,7 +48,7 @@ bool CostCheck::is_within() const { return newer <= baseline * (1.0 + tolerance(
 std::vector<CostCheck> check_costs(const ResultSet& baseline, const ResultSet& newer,
                                    const CostLimits& limits) {
   CostSum before, after;
-  double scans = 0.0;
+  double scans = 0.0, other_scans = 0.0;
   for (const Result& first : baseline.sequences) {
     const auto second = std::ranges::find(newer.sequences, first.sequence, &Result::sequence);
     if (second == newer.sequences.end()) continue;
@@ -60,13 +60,16 @@ std::vector<CostCheck> check_costs(const ResultSet& baseline, const ResultSet& n
     after.add(*other, second->scans.size(),
               is_calibrated ? *cost->calibration_ms / *other->calibration_ms : 1.0);
     scans += static_cast<double>(first.scans.size());
+    other_scans += static_cast<double>(second->scans.size());
   }
-  if (scans == 0.0) return {};
+  if (scans == 0.0 || other_scans == 0.0) return {};
   before.values[0] /= scans;
-  after.values[0] /= scans;
+  after.values[0] /= other_scans;
   std::vector<CostCheck> checks;
   for (std::size_t k = 0; k < kCostKinds.size(); ++k) {
-    const bool is_known = before.values[k] > 0.0 && (k > 0 || before.has_calibration);
+    // Memory and files grow with the scans.
+    const bool is_known =
+        before.values[k] > 0.0 && (k > 0 ? scans == other_scans : before.has_calibration);
     if (!is_known) continue;
     checks.push_back({&kCostKinds[k], before.values[k], after.values[k], limits[k]});
   }

@@ -106,7 +106,9 @@ void add_choice_notes(const StudyTable& table, std::vector<std::string>& notes) 
       "elsewhere");
   for (const StudyChoice& choice : table.choices) {
     if (choice.preset) {
-      notes.push_back(fmt::format("`mosbench run DATA --preset {}`", choice.preset->title()));
+      notes.push_back(fmt::format("`mosbench run DATA --preset {}`: {}",
+                                  shell_word(choice.preset->file.string()),
+                                  choice.preset->words()));
     }
     if (choice.passed_over > 0) {
       notes.push_back(fmt::format("{}: {} of {} passed over, because they fail or lack the metric",

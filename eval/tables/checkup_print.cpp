@@ -95,7 +95,7 @@ std::string poses_text(const SequenceCheckup& sequence) {
       poses.overlap, poses.best_overlap, poses.median_correction_m, poses.measured.scans_read);
   if (sequence.facts.number("places")) {
     text += sequence.facts.told(
-        "  fit             over {fit_scans} scans surfaces are {fit_10_cm:.1f} cm off at 10 m, "
+        "  fit             over {fit_scans} surfaces are {fit_10_cm:.1f} cm off at 10 m, "
         "{fit_30_cm:.1f} cm at 30 m (scan matching errs by {match_cm:.1f} cm)\n");
   }
   text += conventions_text(poses);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "datasets/sequence/reading.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/statistics/run_statistics.hpp"
 
@@ -25,13 +26,17 @@ OwnedSettings of_method(const Result& result) {
 
 OwnedSettings of_poses(const Result& result) {
   OwnedSettings settings{result.method};
-  const bool tells = std::ranges::find(result.from.reading, "poses", [](const auto& statement) {
-                       return statement.first;
-                     }) != result.from.reading.end();
+  const auto told = [&](std::string_view name) -> const std::string* {
+    const auto found = std::ranges::find(result.from.reading, name,
+                                         [](const auto& statement) { return statement.first; });
+    return found == result.from.reading.end() ? nullptr : &found->second;
+  };
   if (result.from.odometry) {
     settings.values.set("poses", result.from.odometry->name);
-  } else if (tells) {
-    settings.values.set("poses", std::string("as given"));
+  } else if (const std::string* source = told("poses")) {
+    std::string poses(*source == kStaticPoses ? kStaticPoses : "as given");
+    if (told("pose_refinement") != nullptr) poses += ", refined";
+    settings.values.set("poses", poses);
   }
   return settings;
 }

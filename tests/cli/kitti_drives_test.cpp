@@ -159,7 +159,7 @@ TEST_P(KittiDrives, MadeOfLabelsHaveNoSpeedToChoose) {
   const cli::Answer fast = cli::run(
       {"run", drive_, "--moving-speed-m-s", "1000000", "--out", (folder_ / "fast").string()});
   EXPECT_EQ(fast.exit_code, 2);
-  EXPECT_THAT(fast.err, HasSubstr("--moving-speed-m-s: the boxes of 0"));
+  EXPECT_THAT(fast.err, HasSubstr("--read moving_speed_m_s: the boxes of 0"));
   EXPECT_THAT(fast.err, HasSubstr("were made of labels"));
   const Dataset drive = open_dataset(drive_, {});
   EXPECT_THAT(drive.sequences.at(0)->reading().truth, HasSubstr("made of labels"));

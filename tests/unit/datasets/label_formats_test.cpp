@@ -82,6 +82,9 @@ TEST_F(LabelFiles, NameTheFirstLabelThatIsNone) {
   EXPECT_THAT(error("a.npz", "PK"), HasSubstr("has no end of a zip archive"));
   EXPECT_THAT(error("a.csv", "x,label\n1,9\n2,9.5\n3,9\n"),
               AllOf(HasSubstr("a.csv:3: label is \"9.5\""), HasSubstr("a label id")));
+  EXPECT_THAT(error("b.npy", npy("|u1", "3,", three<std::uint8_t>(0, 1, 0))),
+              HasSubstr("b.npy: holds the labels 0 and 1 alone"));
+  EXPECT_EQ(read("b.npy", npy("|u1", "3,", three<std::uint8_t>(0, 0, 0))), (Labels{0, 0, 0}));
   EXPECT_THAT(error("a.csv", "x,label\n1,9\n2\n3,9\n"), HasSubstr("a.csv:3: label is not there"));
 }
 
@@ -147,6 +150,15 @@ TEST_F(LabelledSequence, RefusesALabelledCloudInAnotherOrder) {
   EXPECT_THAT(message_of<DataError>([&] { (void)dataset.sequences.at(0)->read_truth(0); }),
               AllOf(HasSubstr("1.pcd: point 1 is not where it is in the scan"),
                     HasSubstr("the points of 1.ply, in their order and frame")));
+}
+
+TEST_F(LabelledSequence, RefusesATableInAnotherOrder) {
+  folder_.write("labels/1.csv", "x,y,z,moving\n1,2,4,0\n1,2,3,1\n1,2,5,0\n");
+  const Dataset dataset = opened();
+  EXPECT_THAT(message_of<DataError>([&] { (void)dataset.sequences.at(0)->read_truth(0); }),
+              HasSubstr("1.csv: point 0 is not where it is in the scan"));
+  folder_.write("labels/1.csv", "\xEF\xBB\xBFmoving,z,y,x\n0,3,2,1\n1,4,2,1\n0,5,2,1\n");
+  EXPECT_EQ(dataset.sequences.at(0)->read_truth(0), (Labels{9, 251, 9}));
 }
 
 TEST_F(LabelledSequence, NamesTheFirstCloudOfLabelsThatIsCut) {
