@@ -107,7 +107,7 @@ TEST_F(ScanRangeCommand, PosesOfAPartNeedStamps) {
 TEST_F(ScanRangeCommand, RefusesRangesWithoutAScanAndPositions) {
   const cli::Answer beyond = ask("run", "14:", {"--out", folder_ / "out"});
   EXPECT_EQ(beyond.exit_code, 2);
-  EXPECT_THAT(beyond.err, HasSubstr("--scans 14:: chooses no scan of sequence room, which has 14 "
+  EXPECT_THAT(beyond.err, HasSubstr("--scans 14: chooses no scan of sequence room, which has 14 "
                                     "scans, expected some of 0 to 13"));
   const cli::Answer empty = ask("run", "5:5");
   EXPECT_EQ(empty.exit_code, 2);

@@ -228,7 +228,7 @@ def test_scans_are_chosen_as_from_a_list(street):
     for bad in (slice(-3, None), slice(5, 5), "5:x"):
         with pytest.raises(ValueError, match="^scans: .* is no range of scans"):
             mosbench.open(street, scans=bad)
-    with pytest.raises(ValueError, match="^scans 99:: chooses no scan of sequence 08, which has 12 scans"):
+    with pytest.raises(ValueError, match="^scans 99: chooses no scan of sequence 08, which has 12 scans"):
         mosbench.open(street, scans=slice(99, None))
 
 

@@ -162,9 +162,18 @@ TEST_F(ScanRangeOf, AStampedPoseFileNeedsPosesOfTheseScansAlone) {
               Contains(HasSubstr("1 of 3 scans are left out")));
 }
 
+TEST_F(ScanRangeOf, ASequenceIsWholeWhereAllScansAreAskedFor) {
+  for (const char* range : {":", "0:", ":10", "0:99"}) {
+    const Dataset all = open(range);
+    EXPECT_EQ(all.sequences.at(0)->size(), 10U) << range;
+    EXPECT_EQ(all.sequences.at(0)->reading().scans, "") << range;
+    EXPECT_THAT(all.sequences.at(0)->recording().doubts, testing::IsEmpty()) << range;
+  }
+}
+
 TEST_F(ScanRangeOf, ASequenceRefusesToBeEmpty) {
   EXPECT_THAT(message_of<UsageError>([&] { open("10:"); }),
-              HasSubstr("scans 10:: chooses no scan of sequence s, which has 10 scans, "
+              HasSubstr("scans 10: chooses no scan of sequence s, which has 10 scans, "
                         "expected some of 0 to 9"));
 }
 

@@ -115,6 +115,17 @@ TEST(Gate, ComparesCpuByTheSpeedOfBothMachines) {
   EXPECT_EQ(gate_checks(result)[0].title, "CPU ms per scan grew");
 }
 
+TEST(Gate, ComparesCpuPerScanAloneWhereScansDiffer) {
+  const ResultSet all = run_that_cost({40.0, 10.0, 100.0, 1000});
+  ResultSet part = run_that_cost({40.0, 10.0, 50.0, 500});
+  part.sequences[0].scans.resize(2);
+  for (const auto& checks : {check_costs(all, part, {}), check_costs(part, all, {})}) {
+    ASSERT_EQ(checks.size(), 1U);
+    EXPECT_EQ(checks[0].kind->key, "cpu");
+    EXPECT_NEAR(checks[0].growth(), 0.0, 1e-12);
+  }
+}
+
 TEST(Gate, ComparesNoCpuWithoutACalibrationAndNoCostThatIsNotKnown) {
   const ResultSet known = run_that_cost({40.0, 10.0, 100.0, 1000});
   const ResultSet old = run_that_cost({40.0, std::nullopt, 100.0, 1000});

@@ -189,6 +189,18 @@ TEST(Leaderboard, ShowsByWhatRunsWereDisturbed) {
   EXPECT_THAT(board.differing[0].values, ElementsAre(is("none"), is("pose_noise_m=0.05,seed=3")));
 }
 
+TEST(Leaderboard, TellsPosesThatWereRefinedOrStandStill) {
+  std::vector<ResultSet> runs = {run_of("a", 900, std::nullopt), run_of("b", 800, std::nullopt),
+                                 run_of("c", 700, std::nullopt)};
+  runs[0].sequences[0].from.reading = {{"poses", "poses.txt"}};
+  runs[1].sequences[0].from.reading = {{"poses", "poses.txt"}, {"pose_refinement", "registered"}};
+  runs[2].sequences[0].from.reading = {{"poses", "static"}};
+  const Leaderboard board = leaderboard_of(runs);
+  ASSERT_EQ(board.differing.size(), 1U);
+  EXPECT_THAT(board.differing[0].values,
+              ElementsAre(is("as given"), is("as given, refined"), is("static")));
+}
+
 TEST(Leaderboard, ShowsTheSettingsInWhichRunsOfOneMethodDiffer) {
   std::vector<ResultSet> runs = {
       run_with("online", 600, {{"delay_scans", 0}, {"voxel_size_m", 0.2}}),
