@@ -162,7 +162,7 @@ Words filled_in(const OldCommand& old, const Words& arguments, const TakesValue&
     return word == "--help" || word == "--help-all" || word == "-h";
   };
   const auto help = std::ranges::find_if(flags, is_help);
-  if (help != flags.end()) return {today, *help};
+  if (old.arguments == 0 && help != flags.end()) return {today, *help};
   if (old.arguments != 0 && free.size() != old.arguments) return {};
   // How many have a place of their own.
   std::size_t placed =

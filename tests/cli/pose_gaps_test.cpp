@@ -44,7 +44,7 @@ TEST_F(PoseGaps, AreLeftOutCountedAndRecorded) {
   const cli::Answer run = ask("run", {"--out", folder_ / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("room: 6 of 12 scans are left out: they lie between poses more "
-                                 "than 0.5 s apart in gap.tum (--max-pose-gap-s)"));
+                                 "than 0.5 s apart in gap.tum (--read max_pose_gap_s)"));
   const auto result = cli::timeless_result(folder_ / "out/room");
   EXPECT_EQ(result.at("scans").size(), 6U);
   EXPECT_EQ(result.at("scans_left_out").dump(),
