@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <string>
@@ -73,8 +74,9 @@ class UnfinishedConversion {
   }
 
   /// Removes all that was written, unless an earlier conversion went on.
-  void give_up() const {
+  void give_up() {
     if (is_resumed_) return;
+    reserve_.reset();
     std::error_code failed;
     const fs::path mark = mark_of(root_);
     for (const auto& entry : fs::directory_iterator(root_, failed)) {
@@ -87,8 +89,12 @@ class UnfinishedConversion {
   }
 
  private:
+  static constexpr std::size_t kReserveBytes = 1U << 20U;
+
   std::filesystem::path root_;
   bool is_resumed_;
+  /// Where memory ran out, looking into a folder needs some.
+  std::unique_ptr<char[]> reserve_ = std::make_unique<char[]>(kReserveBytes);
 };
 
 SplitNumbers split_numbers(const Dataset& dataset) {
@@ -270,8 +276,8 @@ std::vector<std::string> convert(
   const LayoutWriter& writer = *layout.writer;
   const std::vector<Target> targets = targets_of(dataset, writer, options.writing);
   const FolderLock lock(options.out);
-  const UnfinishedConversion unfinished(options.out, statement_of(dataset, options),
-                                        expected_files(dataset, writer, targets));
+  UnfinishedConversion unfinished(options.out, statement_of(dataset, options),
+                                  expected_files(dataset, writer, targets));
   std::size_t total = 0;
   for (const auto& sequence : dataset.sequences) total += sequence->size();
   std::size_t done = 0;
