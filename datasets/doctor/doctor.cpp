@@ -249,12 +249,6 @@ std::vector<ScanPair> telling_pairs(const std::vector<Pose>& poses, const std::v
 
 }  // namespace
 
-std::vector<Pose> poses_of(const Sequence& sequence) {
-  std::vector<Pose> poses;
-  for (const ScanEntry& scan : sequence.recording().scans) poses.push_back(scan.map_from_sensor);
-  return poses;
-}
-
 bool Checkup::has(Severity severity) const {
   return std::ranges::any_of(
       symptoms, [severity](const Symptom& finding) { return finding.severity == severity; });

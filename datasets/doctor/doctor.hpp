@@ -102,7 +102,6 @@ void examine_labels(const Sequence& sequence, SequenceCheckup& checkup);
 /// frames alone and files of zeros for the scans between. Reads the truth of all.
 std::vector<std::size_t> scans_with_labels(const Sequence& sequence);
 
-std::vector<Pose> poses_of(const Sequence& sequence);
 double share(std::size_t part, std::size_t whole);
 
 }  // namespace mosbench

@@ -32,12 +32,6 @@ class StandingSequence : public PosedSequence {
   }
 };
 
-std::vector<Pose> poses_of(const Sequence& sequence) {
-  std::vector<Pose> poses;
-  for (const ScanEntry& scan : sequence.recording().scans) poses.push_back(scan.map_from_sensor);
-  return poses;
-}
-
 /// How far a list of poses is off another, and where most.
 struct Moves {
   double median_m = 0.0, median_deg = 0.0, most_m = 0.0;

@@ -95,6 +95,12 @@ void Sequence::check_count(std::size_t scan_index, std::size_t points) const {
                   fmt::format("{} points", entry.points));
 }
 
+std::vector<Pose> poses_of(const Sequence& sequence) {
+  std::vector<Pose> poses;
+  for (const ScanEntry& scan : sequence.recording().scans) poses.push_back(scan.map_from_sensor);
+  return poses;
+}
+
 std::vector<std::size_t> scans_with_truth(const Sequence& sequence) {
   std::vector<std::size_t> scans;
   for (std::size_t k = 0; k < sequence.size(); ++k) {

@@ -197,6 +197,9 @@ class SequenceAround : public Sequence {
   std::unique_ptr<Sequence> inner_;
 };
 
+/// Returns the map_from_sensor of each scan.
+std::vector<Pose> poses_of(const Sequence& sequence);
+
 /// Returns the indices of the labelled scans, in order.
 std::vector<std::size_t> scans_with_truth(const Sequence& sequence);
 

@@ -75,12 +75,6 @@ ordered_json seen_from_above(const std::vector<Pose>& poses) {
   return json;
 }
 
-std::vector<Pose> poses_of(const Sequence& sequence) {
-  std::vector<Pose> poses;
-  for (std::size_t k = 0; k < sequence.size(); ++k) poses.push_back(sequence.map_from_sensor(k));
-  return poses;
-}
-
 bool are_same_scans(const Sequence& one, const Sequence& other) {
   bool same = one.size() == other.size();
   for (std::size_t k = 0; same && k < one.size(); ++k) same = one.stem(k) == other.stem(k);
