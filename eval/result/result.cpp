@@ -142,10 +142,12 @@ std::optional<std::string> only_split(const Result& result) {
   return is_own ? std::nullopt : result.summary_split;
 }
 
-std::string disturbance_of(const Result& result) {
-  const auto perturb =
-      std::ranges::find(result.from.reading, "perturb", &ReadingMembers::value_type::first);
-  return perturb == result.from.reading.end() ? "" : perturb->second;
+std::string disturbance_of(const Result& result) { return reading_statement(result, "perturb"); }
+
+std::string reading_statement(const Result& result, std::string_view name) {
+  const auto found =
+      std::ranges::find(result.from.reading, name, &ReadingMembers::value_type::first);
+  return found == result.from.reading.end() ? "" : found->second;
 }
 
 std::string simulation_of(const Result& result) {

@@ -182,6 +182,8 @@ std::optional<std::string> only_split(const Result& result);
 
 /// What --perturb said of the scans; empty where they were read as they are.
 std::string disturbance_of(const Result& result);
+/// Returns what the result states of its reading under this name; empty where it states nothing.
+std::string reading_statement(const Result& result, std::string_view name);
 /// Which simulation its scans are of; empty for real data.
 std::string simulation_of(const Result& result);
 

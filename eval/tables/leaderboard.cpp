@@ -26,16 +26,12 @@ OwnedSettings of_method(const Result& result) {
 
 OwnedSettings of_poses(const Result& result) {
   OwnedSettings settings{result.method};
-  const auto told = [&](std::string_view name) -> const std::string* {
-    const auto found = std::ranges::find(result.from.reading, name,
-                                         [](const auto& statement) { return statement.first; });
-    return found == result.from.reading.end() ? nullptr : &found->second;
-  };
+  const std::string source = reading_statement(result, "poses");
   if (result.from.odometry) {
     settings.values.set("poses", result.from.odometry->name);
-  } else if (const std::string* source = told("poses")) {
-    std::string poses(*source == kStaticPoses ? kStaticPoses : "as given");
-    if (told("pose_refinement") != nullptr) poses += ", refined";
+  } else if (!source.empty()) {
+    std::string poses(source == kStaticPoses ? kStaticPoses : "as given");
+    if (!reading_statement(result, "pose_refinement").empty()) poses += ", refined";
     settings.values.set("poses", poses);
   }
   return settings;
