@@ -1,9 +1,9 @@
-#include <algorithm>
 #include <deque>
 #include <mosbench/pose_refiner.hpp>
 #include <optional>
 #include <utility>
 
+#include "core/base/median.hpp"
 #include "core/odometry/rigid_motion.hpp"
 #include "core/odometry/surface_map.hpp"
 #include "core/odometry/surface_registration.hpp"
@@ -51,13 +51,6 @@ std::vector<Pose> held_by(const std::vector<Pose>& given, std::vector<Pose> pose
   const std::vector<Offset6> taken_back = slowly_following(off);
   for (std::size_t k = 0; k < poses.size(); ++k) poses[k] = moved_by(poses[k], taken_back[k]);
   return poses;
-}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
 }
 
 }  // namespace
@@ -120,8 +113,8 @@ RefinedPoses PoseRefiner::finish() const {
   const State& state = *state_;
   const std::vector<Pose>& given = state.given;
   RefinedPoses refined{.map_from_sensor = state.pushed, .failed = state.failed};
-  refined.given_fit_m = median(state.given_fits_m);
-  refined.fit_m = median(state.fits_m);
+  refined.given_fit_m = upper_median(state.given_fits_m);
+  refined.fit_m = upper_median(state.fits_m);
   std::vector<Pose> poses;
   for (std::size_t k = 0; k < given.size(); ++k) {
     const bool corrects = state.votes[k] > 0;

@@ -18,22 +18,22 @@ constexpr double kFewestPoints = 8.0;
 constexpr double kSpread_m = 0.12;
 constexpr double kNoHold = std::numeric_limits<double>::infinity();
 
-std::uint64_t key_of(const Eigen::Vector3d& position_m) {
+}  // namespace
+
+std::uint64_t cube_key(const Eigen::Vector3d& position_m, double size_m) {
   std::uint64_t key = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto cell = static_cast<std::int64_t>(std::floor(position_m[axis] / kCell_m));
-    key = (key << 21U) | (static_cast<std::uint64_t>(cell) & 0x1FFFFFU);
+    const auto cube = static_cast<std::int64_t>(std::floor(position_m[axis] / size_m));
+    key = (key << 21U) | (static_cast<std::uint64_t>(cube) & 0x1FFFFFU);
   }
   return key;
 }
-
-}  // namespace
 
 void SurfaceMap::enter(std::span<const Eigen::Vector3d> points_m, const Pose& map_from_sensor) {
   ++scans_;
   for (const Eigen::Vector3d& point_m : points_m) {
     const Eigen::Vector3d q = moved(map_from_sensor, point_m);
-    Cell& cell = cells_[key_of(q)];
+    Cell& cell = cells_[cube_key(q, kCell_m)];
     if (cell.count > kMostPoints && cell.last_scan != scans_) {
       cell.count /= 2;
       cell.sum /= 2;
@@ -70,7 +70,7 @@ std::optional<Surface> SurfaceMap::fitted(const Cell& cell) {
 }
 
 const Surface* SurfaceMap::at(const Eigen::Vector3d& position_m) const {
-  const auto found = cells_.find(key_of(position_m));
+  const auto found = cells_.find(cube_key(position_m, kCell_m));
   if (found == cells_.end()) return nullptr;
   Cell& cell = found->second;
   if (!cell.is_fitted) cell.surface = fitted(cell);

@@ -10,6 +10,9 @@
 
 namespace mosbench::odometry {
 
+/// Returns a key of the cube of a grid that holds the position; wraps after 2^21 cubes.
+std::uint64_t cube_key(const Eigen::Vector3d& position_m, double size_m);
+
 /// A surface with the directions in which it holds a point: a plane along its normal, a pole
 /// sideways, a bush in all.
 struct Surface {

@@ -40,12 +40,7 @@ std::vector<Eigen::Vector3d> first_of_cubes(std::span<const Eigen::Vector3d> poi
   std::unordered_set<std::uint64_t> taken;
   std::vector<Eigen::Vector3d> firsts_m;
   for (const Eigen::Vector3d& p : points_m) {
-    std::uint64_t key = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto cube = static_cast<std::int64_t>(std::floor(p[axis] / kCube_m));
-      key = (key << 21U) | (static_cast<std::uint64_t>(cube) & 0x1FFFFFU);
-    }
-    if (taken.insert(key).second) firsts_m.push_back(p);
+    if (taken.insert(cube_key(p, kCube_m)).second) firsts_m.push_back(p);
   }
   return firsts_m;
 }

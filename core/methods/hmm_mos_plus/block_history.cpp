@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/median.hpp"
+
 namespace mosbench::hmm_mos_plus {
 namespace {
 
@@ -23,12 +25,6 @@ std::vector<double> distances_ns(std::span<const std::int64_t> stamps_ns) {
   return distances;
 }
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// Turns are pruned before their age is beyond what 8 bits hold: it is below kMaxAgeTicks and
 /// this at an update, and grows by kMaxAgeTicks until `within` takes none for young.
 constexpr std::uint32_t kPruneTicks = 50;
@@ -39,7 +35,7 @@ static_assert(2 * BlockHistory::kMaxAgeTicks + kPruneTicks < 256);
 TickClock::TickClock(std::span<const std::int64_t> stamps_ns) {
   const std::vector<double> apart_ns = distances_ns(stamps_ns);
   if (apart_ns.empty()) return;
-  const double period_ns = median(apart_ns);
+  const double period_ns = upper_median(apart_ns);
   if (period_ns < kShortestPeriod_ns || period_ns > kLongestPeriod_ns) return;
   const double measured = period_ns / kTick_ns;
   const double ticks_per_period = measured >= 0.8 && measured <= 1.25 ? 1.0 : measured;
