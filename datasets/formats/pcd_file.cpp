@@ -179,6 +179,13 @@ std::vector<Point> points_in(const PcdRecords& records, const std::filesystem::p
   return points_of(records.head, records.bytes, file);
 }
 
+std::vector<std::uint32_t> labels_in(const PcdRecords& records, const std::filesystem::path& file) {
+  const CloudField* field = find_label_field(records.head);
+  if (field == nullptr) throw DataError(file, "the points have no labels", kLabelFields);
+  if (records.head.points() == 0) return {};
+  return label_ids(numbers_of(records.head, *field, records.bytes, file), file);
+}
+
 std::vector<double> times_in(const PcdRecords& records, const std::filesystem::path& file) {
   if (records.head.points() == 0) return {};
   const CloudField* field = find_time_field(records.head);
@@ -222,9 +229,14 @@ std::optional<std::string> unpack_lzf(std::string_view packed, std::size_t size_
   return bytes;
 }
 
-PcdScan parse_pcd(std::string_view bytes, const std::filesystem::path& file, bool timed) {
+ScanParts parse_pcd(std::string_view bytes, const std::filesystem::path& file,
+                    const WantedParts& wanted) {
   const PcdRecords records = parse_records(bytes, file);
-  return {points_in(records, file), timed ? times_in(records, file) : std::vector<double>()};
+  ScanParts parts;
+  parts.points = points_in(records, file);
+  if (wanted.times) parts.times = times_in(records, file);
+  if (wanted.labels) parts.labels = labels_in(records, file);
+  return parts;
 }
 
 PcdHeader read_pcd_header(const std::filesystem::path& file) {
@@ -242,11 +254,7 @@ std::vector<Point> read_pcd(const std::filesystem::path& file) {
 
 std::vector<std::uint32_t> parse_pcd_labels(std::string_view bytes,
                                             const std::filesystem::path& file) {
-  const PcdRecords records = parse_records(bytes, file);
-  const CloudField* field = find_label_field(records.head);
-  if (field == nullptr) throw DataError(file, "the points have no labels", kLabelFields);
-  if (records.head.points() == 0) return {};
-  return label_ids(numbers_of(records.head, *field, records.bytes, file), file);
+  return labels_in(parse_records(bytes, file), file);
 }
 
 }  // namespace mosbench

@@ -32,16 +32,24 @@ struct PcdHeader {
 /// Throws DataError for a missing or wrong line.
 PcdHeader parse_pcd_header(std::string_view bytes, const std::filesystem::path& file);
 
-/// A .pcd scan whose points may have times.
-struct PcdScan {
+/// What is read of a scan besides its points.
+struct WantedParts {
+  bool times = false, labels = false;
+};
+
+/// The points of a scan with what was wanted of each.
+struct ScanParts {
   std::vector<Point> points;
-  std::vector<double> times;  ///< as stored, of the field `find_time_field`, if asked for
+  std::vector<double> times;          ///< as stored
+  std::vector<std::uint32_t> labels;  ///< raw label ids
 };
 
 /// Parses a whole .pcd file, ascii, binary or binary_compressed: fields x, y, z, intensity (0 when
-/// there is none), and with `timed` the times; all other fields are ignored. Throws DataError for a
-/// body that is not the points of its header.
-PcdScan parse_pcd(std::string_view bytes, const std::filesystem::path& file, bool timed = false);
+/// there is none), and as wanted those of `find_time_field` and `find_label_field`; all others are
+/// ignored. Throws DataError for a body that is not the points of its header, where a wanted field
+/// is not there, and for a label that is no whole number of 32 bits.
+ScanParts parse_pcd(std::string_view bytes, const std::filesystem::path& file,
+                    const WantedParts& wanted = {});
 
 /// Unpacks LZF, in which .pcd files are compressed, to exactly `size_bytes`. Returns nothing for
 /// bytes that do not unpack to that.

@@ -73,17 +73,21 @@ std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_
   return read_bin(file, columns_of(file, bin_columns), std::move(reused));
 }
 
-TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_columns) {
-  if (has_extension(file, ".pcd")) {
-    PcdScan scan = parse_pcd(read_file(file), file, true);
-    return {std::move(scan.points), std::move(scan.times)};
-  }
+ScanParts read_scan_parts(const std::filesystem::path& file, std::size_t bin_columns,
+                          const WantedParts& wanted) {
   const std::string bytes = read_file(file);
+  if (has_extension(file, ".pcd")) return parse_pcd(bytes, file, wanted);
+  ScanParts parts;
   if (has_extension(file, ".ply")) {
-    return {parse_ply(bytes, file), parse_ply_times(bytes, file)};
+    parts.points = parse_ply(bytes, file);
+    if (wanted.times) parts.times = parse_ply_times(bytes, file);
+    if (wanted.labels) parts.labels = parse_ply_labels(bytes, file);
+    return parts;
   }
   const std::size_t columns = columns_of(file, bin_columns);
-  return {parse_bin(bytes, columns, file), parse_bin_times(bytes, columns, file)};
+  parts.points = parse_bin(bytes, columns, file);
+  if (wanted.times) parts.times = parse_bin_times(bytes, columns, file);
+  return parts;
 }
 
 void check_usual_bin_columns(std::span<const StemFile> scans) {

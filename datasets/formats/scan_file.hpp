@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "datasets/disk/folder_listing.hpp"
+#include "datasets/formats/pcd_file.hpp"
 
 namespace mosbench {
 
@@ -32,13 +33,10 @@ std::vector<StemFile> list_scans(const std::filesystem::path& sequence_folder);
 std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_columns = 4,
                              std::vector<Point> reused = {});
 
-struct TimedScan {
-  std::vector<Point> points;
-  std::vector<double> times;  ///< of each point, as stored
-};
-/// Reads a scan whose points have times: of a .bin file after x y z intensity, of a .pcd or .ply
-/// file in the field `find_time_field`. Throws DataError.
-TimedScan read_timed_scan(const std::filesystem::path& file, std::size_t bin_columns);
+/// Reads a scan with what is wanted of its points: of a .bin file times after x y z intensity, of a
+/// .pcd or .ply file the fields `find_time_field` and `find_label_field`. Throws DataError.
+ScanParts read_scan_parts(const std::filesystem::path& file, std::size_t bin_columns,
+                          const WantedParts& wanted);
 
 /// Looks into some of the scans, if they are .bin files, whether they have four float32 per point,
 /// which nothing in them says. Throws DataError where they clearly have others.

@@ -22,17 +22,12 @@ KittiSequence::KittiSequence(std::string name, const std::filesystem::path& fold
     label_folder_ = folder / layout_.label_folder;
     pair_labels();
   } else {
-    take_labels_of_scans();
+    remark_on_labels(take_labels_of_scans());
   }
 }
 
-void KittiSequence::take_labels_of_scans() {
+void KittiSequence::remark_on_labels(std::size_t labelled) {
   Recording& recording = mutable_recording();
-  std::size_t labelled = 0;
-  for (std::size_t k = 0; k < size(); ++k) {
-    recording.scans[k].has_truth = has_labels(k);
-    if (has_labels(k)) ++labelled;
-  }
   if (labelled == 0) {
     recording.remarks.push_back(fmt::format("no {}/: there is no truth", layout_.label_folder));
   } else if (labelled == size()) {
@@ -82,8 +77,8 @@ void KittiSequence::check_same_points(std::size_t scan_index) const {
 }
 
 std::vector<std::uint32_t> KittiSequence::read_truth(std::size_t scan_index) const {
+  if (label_folder_.empty()) return FolderSequence::read_truth(scan_index);
   if (!has_truth(scan_index)) refuse_truth(scan_index);
-  if (label_folder_.empty()) return read_cloud_labels(*scan_file(scan_index));
   const std::filesystem::path& file = label_files_[scan_index];
   check_same_points(scan_index);
   return layout_.read_labels(file, point_count(scan_index));

@@ -35,7 +35,7 @@ class KittiSequence : public FolderSequence {
 
  private:
   void pair_labels();
-  void take_labels_of_scans();
+  void remark_on_labels(std::size_t labelled);
   void check_same_points(std::size_t scan_index) const;
 
   SequenceLayout layout_;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/label_formats.hpp"
 #include "datasets/formats/point_records.hpp"
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/sequence/pose_clock.hpp"
@@ -76,7 +77,10 @@ void FolderSequence::judge_times(const Reading& asked) {
     return;
   }
   clock_ = judged_clock(
-      recording, [&](std::size_t k) { return read_timed_scan(*scan(k).file, bin_columns_).times; },
+      recording,
+      [&](std::size_t k) {
+        return read_scan_parts(*scan(k).file, bin_columns_, {.times = true}).times;
+      },
       told_unit(asked), !is_bin);
 }
 
@@ -90,17 +94,23 @@ std::vector<std::int64_t> FolderSequence::times_ns(std::size_t scan_index,
 
 void FolderSequence::read(std::size_t scan_index, Frame& frame) const {
   const std::filesystem::path& file = *scan(scan_index).file;
-  TimedScan timed;
-  if (reads_times()) {
-    timed = read_timed_scan(file, bin_columns_);
+  const WantedParts wanted{.times = reads_times(),
+                           .labels = truth_in_scans_ && has_truth(scan_index)};
+  ScanParts parts;
+  if (wanted.times || wanted.labels) {
+    parts = read_scan_parts(file, bin_columns_, wanted);
   } else {
-    timed.points = read_points(scan_index, std::move(frame.points));
+    parts.points = read_points(scan_index, std::move(frame.points));
   }
-  frame.points = std::move(timed.points);
+  frame.points = std::move(parts.points);
   check_count(scan_index, frame.points.size());
   describe(scan_index, frame);
-  frame.point_times_ns = times_ns(scan_index, std::move(timed.times));
-  add_truth(scan_index, frame);
+  frame.point_times_ns = times_ns(scan_index, std::move(parts.times));
+  if (wanted.labels) {
+    frame.truth = std::move(parts.labels);
+  } else {
+    add_truth(scan_index, frame);
+  }
 }
 
 std::vector<Point> FolderSequence::read_points(std::size_t scan_index,
@@ -108,8 +118,19 @@ std::vector<Point> FolderSequence::read_points(std::size_t scan_index,
   return read_scan(*scan(scan_index).file, bin_columns_, std::move(reused));
 }
 
+std::size_t FolderSequence::take_labels_of_scans() {
+  truth_in_scans_ = true;
+  std::size_t labelled = 0;
+  for (ScanEntry& entry : mutable_recording().scans) {
+    entry.has_truth = labelled_[*entry.number];  // scans without a pose were left out meanwhile
+    labelled += entry.has_truth ? 1 : 0;
+  }
+  return labelled;
+}
+
 std::vector<std::uint32_t> FolderSequence::read_truth(std::size_t scan_index) const {
-  refuse_truth(scan_index);
+  if (!truth_in_scans_ || !has_truth(scan_index)) refuse_truth(scan_index);
+  return read_cloud_labels(*scan(scan_index).file);
 }
 
 }  // namespace mosbench

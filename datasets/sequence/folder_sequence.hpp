@@ -22,8 +22,8 @@ struct FolderLayout {
 };
 
 /// A sequence folder with one file per scan, poses in a text file, and stamps in times.txt or in
-/// the names of the scans where there are any. Opening checks scan sizes and all counts. It has no
-/// truth of its own.
+/// the names of the scans where there are any. Opening checks scan sizes and all counts. Its
+/// truth are the labels that scans hold, if a layout takes them.
 class FolderSequence : public Sequence {
  public:
   /// Reads poses by `place_scans`. Throws DataError.
@@ -35,8 +35,8 @@ class FolderSequence : public Sequence {
   std::vector<std::uint32_t> read_truth(std::size_t scan_index) const override;
 
  protected:
-  /// Whether the points of a scan have labels of their own.
-  bool has_labels(std::size_t scan_index) const { return labelled_[scan_index]; }
+  /// Takes the labels that points of scans have as truth, and returns how many scans have some.
+  std::size_t take_labels_of_scans();
   /// Reads the points of a scan alone.
   std::vector<Point> read_points(std::size_t scan_index, std::vector<Point> reused = {}) const;
 
@@ -51,7 +51,8 @@ class FolderSequence : public Sequence {
   std::size_t bin_columns_;
   bool times_in_column_;
   bool times_in_fields_ = true;
-  std::vector<bool> labelled_;  ///< by scan
+  bool truth_in_scans_ = false;
+  std::vector<bool> labelled_;  ///< by number of a scan, whether its points have labels
   PointClock clock_;
 };
 

@@ -135,6 +135,20 @@ TEST_F(LabelledSequence, HasTheLabelsOfItsScansScanByScan) {
   EXPECT_THAT(sequence.recording().remarks, Contains(HasSubstr("of 1 of 2 scans")));
 }
 
+TEST_F(LabelledSequence, KeepsLabelsWithTheirScansWhereSomeAreLeftOut) {
+  folder_.write("velodyne/3.ply", kPly + std::string("1 2 3 9\n1 2 4 0\n1 2 5 251\n"));
+  folder_.write("times.txt", "0\n1\n2\n");
+  folder_.write("p.tum", "1 0 0 0 0 0 0 1\n2 1 0 0 0 0 0 1\n");
+  const Dataset dataset =
+      open_dataset(folder_.path(), {.reading = {.poses = PoseFile{folder_ / "p.tum"}}});
+  const Sequence& sequence = *dataset.sequences.at(0);
+  ASSERT_EQ(sequence.size(), 2U);
+  EXPECT_EQ(sequence.stem(0), "2");
+  EXPECT_FALSE(sequence.has_truth(0));
+  EXPECT_EQ(sequence.read(1).truth, (Labels{9, 0, 251}));
+  EXPECT_EQ(sequence.read_truth(1), (Labels{9, 0, 251}));
+}
+
 TEST_F(LabelledSequence, TakesLabelsInAnyFormatBesideItsScans) {
   folder_.write("labels/1.csv", "label\n9\n9\n251\n");
   folder_.write("labels/2.npy", npy("|u1", "1,", "\xfb"));
