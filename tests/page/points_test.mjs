@@ -27,15 +27,11 @@ function countsOf({ tp, fp, fn, tn, ignored }) {
   return { tp, fp, fn, tn, ignored };
 }
 
-async function everyScanShowsItsCounts(page, result) {
-  await page.keyboard.press('Home');
-  for (let k = 0; k < result.scans.length; ++k) {
-    await settled(page);
-    assert.equal(await page.evaluate(() => mosbenchReport.state.get('scan')), k);
-    const shown = await page.evaluate(() => mosbenchReport.viewer.coloursShown());
-    assert.deepEqual(coloursOf(shown), countsOf(result.scans[k]), `scan ${k}`);
-    await page.keyboard.press('ArrowRight');
-  }
+async function scanShowsItsCounts(page, result, k) {
+  await settled(page);
+  assert.equal(await page.evaluate(() => mosbenchReport.state.get('scan')), k);
+  const shown = await page.evaluate(() => mosbenchReport.viewer.coloursShown());
+  assert.deepEqual(coloursOf(shown), countsOf(result.scans[k]), `scan ${k}`);
 }
 
 test('points of each colour equal the counts of result.json, scan by scan', async () => {
@@ -45,7 +41,8 @@ test('points of each colour equal the counts of result.json, scan by scan', asyn
   const result = resultOf(join(online, '06'));
   assert.ok(result.summary.tp > 0 && result.summary.fn > 0, 'the simulated run has true and false points');
   const page = await openReport(browser, file, { viewport: SMALL });
-  await everyScanShowsItsCounts(page, result);
+  await page.keyboard.press('Home');
+  for (let k = 0; k < result.scans.length; ++k, await page.keyboard.press('ArrowRight')) await scanShowsItsCounts(page, result, k);
   refuseComplaints(page);
 });
 
@@ -56,7 +53,10 @@ test('points of each colour equal the counts on the real KITTI drive 0005', { sk
   mosbench('report', run, '-o', file);
   const result = resultOf(join(run, 'kitti_0005'));
   const page = await openReport(browser, file, { viewport: SMALL });
-  await everyScanShowsItsCounts(page, result);
+  for (let k = 0; k < result.scans.length; k += 6) {
+    await page.evaluate((scan) => mosbenchReport.transport.go(scan), k);
+    await scanShowsItsCounts(page, result, k);
+  }
   refuseComplaints(page);
 });
 
