@@ -13,8 +13,10 @@ struct RefinedPoses {
   std::vector<Pose> map_from_sensor;  ///< one per scan; the first as given
   std::vector<std::size_t> failed;    ///< scans whose registration failed: moved as given
   std::size_t corrected = 0;          ///< motions between scans that are not those given
-  double given_fit_m = 0, fit_m = 0;  ///< medians over scans of the mean distance of points from
-                                      ///< the surfaces of a scan up to ten before
+  /// Medians over scans of the mean distance of points from the surfaces of a scan up to ten
+  /// before, with the poses given and with those corrected.
+  double given_fit_m = 0;
+  double fit_m = 0;  ///< see given_fit_m
 };
 
 /// Corrects poses by registering every scan to the surfaces of those before, with the given motion
