@@ -79,6 +79,7 @@ std::vector<std::string> sentences(const Standing& standing);
 struct CheckResult {
   std::string name;            ///< the same in every run: "room"
   std::string title, message;  ///< what a pull request says of a failed one; empty of others
+  bool was_made = true;        ///< false: the message says why it could not be
   bool passed() const { return message.empty(); }
 };
 
@@ -86,6 +87,7 @@ struct CheckResult {
 struct Answer {
   std::string text{};  ///< plain lines; with sheets those below them
   int exit_code = 0;
+  std::string failure{};               ///< why nothing was found out, which stderr says
   Format usual = Format::kText;        ///< where none was asked for
   std::optional<Standing> standing{};  ///< of answers about results
   std::vector<Sheet> sheets{};

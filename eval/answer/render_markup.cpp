@@ -158,8 +158,9 @@ std::string test_case(const CheckResult& check) {
       fmt::format("<testcase classname=\"mosbench\" name=\"{}\"", xml_text(check.name));
   if (check.passed()) return head + "/>\n";
   const std::string message = xml_text(check.message);
-  return fmt::format("{}><failure message=\"{}: {}\">{}</failure></testcase>\n", head,
-                     xml_text(check.title), message, message);
+  const char* tag = check.was_made ? "failure" : "error";
+  return fmt::format("{}><{} message=\"{}: {}\">{}</{}></testcase>\n", head, tag,
+                     xml_text(check.title), message, message, tag);
 }
 
 }  // namespace
@@ -233,11 +234,12 @@ std::string junit_of(const Answer& answer) {
   if (answer.checks.empty()) {
     throw UsageError("--as junit: the answer has no checks, expected another format");
   }
-  const auto failed = std::ranges::count(answer.checks, false, &CheckResult::passed);
+  const auto missing = std::ranges::count(answer.checks, false, &CheckResult::was_made);
+  const auto failed = std::ranges::count(answer.checks, false, &CheckResult::passed) - missing;
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
-      "<testsuite name=\"mosbench\" tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"0\">\n",
-      answer.checks.size(), failed);
+      "<testsuite name=\"mosbench\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"0\">\n",
+      answer.checks.size(), failed, missing);
   if (const Lines marks = marks_of(answer); !marks.empty()) {
     text += fmt::format("<properties><property name=\"standing\" value=\"{}\"/></properties>\n",
                         joined(marks, xml_text, "; "));

@@ -45,16 +45,7 @@ bool is_chosen(const CompareFlags& options, const std::string& sequence) {
 }
 
 ResultSet chosen_run(const CompareFlags& options, const std::filesystem::path& folder) {
-  ResultSet run = load_result_set(folder);
-  for (const std::string& name : options.sequences) {
-    const bool is_there = std::ranges::any_of(
-        run.sequences, [&](const Result& result) { return result.sequence.text() == name; });
-    if (is_there) continue;
-    throw DataError(folder, "has no sequence " + name, "those that --sequences names");
-  }
-  std::erase_if(run.sequences,
-                [&](const Result& result) { return !is_chosen(options, result.sequence); });
-  return run;
+  return only(load_result_set(folder), options.sequences);
 }
 
 void check_shares_scans(const PairedRuns& paired, const CompareFlags& options) {

@@ -55,9 +55,6 @@ Answer answer_of(const ResultSet& baseline, const ResultSet& newer, const Paired
 }
 
 Answer compare(const CompareFlags& options) {
-  const Format written = format_of_name(options.out).value_or(Format::kMarkdown);
-  if (!options.out.empty()) check_output(options.out, written);
-  if (!options.summary.empty()) check_output(options.summary, Format::kMarkdown);
   const ResultSet baseline = chosen_run(options, options.baseline);
   const ResultSet newer = chosen_run(options, options.newer);
   refuse_stale({newer}, options.allow_stale);
@@ -69,7 +66,42 @@ Answer compare(const CompareFlags& options) {
   }
   check_shares_scans(paired, options);
   const GateResult result = judged(options, baseline, newer, paired);
-  Answer answer = answer_of(baseline, newer, paired, result);
+  return answer_of(baseline, newer, paired, result);
+}
+
+/// What a gate answers that cannot judge: CI servers must not take the answer before for this one.
+Answer refusal(const Failure& failure) {
+  constexpr const char* kTitle = "MOS gate: not judged";
+  return {.exit_code = failure.exit_code,
+          .failure = failure.message,
+          .sheets = {{.title = kTitle, .notes = {failure.message}}},
+          .json = json_text({{"passed", false}, {"error", failure.message}}),
+          .checks = {{"gate", kTitle, failure.message, false}}};
+}
+
+Answer compare_or_refuse(CompareFlags& options) {
+  try {
+    choose_method(options);
+    return compare(options);
+  } catch (...) {
+    return refusal(current_failure());
+  }
+}
+
+Answer answer(CompareFlags options) {
+  const Format written = format_of_name(options.out).value_or(Format::kMarkdown);
+  if (!options.out.empty()) check_output(options.out, written);
+  if (!options.summary.empty()) check_output(options.summary, Format::kMarkdown);
+  const bool judges = options.accept.empty() && options.by.empty();
+  if (!judges && written == Format::kJunit) {
+    throw UsageError(
+        fmt::format("{}: test cases are of a gate, expected another ending with --by or --accept",
+                    options.out.string()));
+  }
+  if (!judges) choose_method(options);
+  Answer answer = judges                   ? compare_or_refuse(options)
+                  : options.accept.empty() ? difference_by(options)
+                                           : accept_newer(options);
   if (!options.out.empty()) {
     write_output(options.out, render(answer, written));
     answer = answer_beside(options.out, std::move(answer));
@@ -77,13 +109,7 @@ Answer compare(const CompareFlags& options) {
   if (!options.summary.empty()) {
     append_output(options.summary, render(answer, Format::kMarkdown));
   }
-  return options.quiet && result.passed() ? Answer{} : answer;
-}
-
-Answer answer(CompareFlags options) {
-  choose_method(options);
-  if (!options.accept.empty()) return accept_newer(options);
-  return options.by.empty() ? compare(options) : difference_by(options);
+  return options.quiet && judges && answer.exit_code == 0 ? Answer{} : answer;
 }
 
 }  // namespace
@@ -109,7 +135,8 @@ CommandRun add_compare(CLI::App& command) {
       "Judge nothing; show what NEW changes in each sequence, or on which scans and objects the "
       "two disagree")
       ->check(CLI::IsMember({"sequence", "scan", "object"}));
-  add(command, "--data DIR", options->data, "Data set of both, for --by object");
+  add(command, "--data DIR", options->data,
+      "Data set of both, for --by object (default: where BASELINE read it)");
   add_dataset_kind_flag(command, options->dataset)->group(kRareGroup);
   add(command, "--top", options->top, "How many scans and objects --by lists")
       ->capture_default_str()
@@ -121,8 +148,8 @@ CommandRun add_compare(CLI::App& command) {
   add(command, "--method NAME", options->method,
       "Judge or accept this method only, where folders hold several");
   add(command, "-o,--out FILE", options->out,
-      "Also write the table to FILE: .md, .html, .json, or .xml for JUnit");
-  add(command, "--summary FILE", options->summary, "Also append the table in markdown to FILE");
+      "Also write the answer to FILE: .md, .html, .json, or .xml for JUnit");
+  add(command, "--summary FILE", options->summary, "Also append the answer in markdown to FILE");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing when it passes");
   return [options] { return answer(*options); };
 }

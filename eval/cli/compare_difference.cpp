@@ -83,7 +83,7 @@ std::vector<std::size_t> scans_of(const ResultScans& first, const Predictions& s
 
 /// Both runs are broken down over the scans as the first one read them, with its poses.
 std::vector<ObjectDisagreement> objects_of(const Result& first, const Result& second,
-                                           const std::filesystem::path& root) {
+                                           const std::optional<std::filesystem::path>& root) {
   const ResultScans scans(first, root);
   const ResultScans others(second, root);
   const LabelsByStem labels(others, scans.sequence());
@@ -93,28 +93,36 @@ std::vector<ObjectDisagreement> objects_of(const Result& first, const Result& se
                              break_down(scans.sequence(), counted, labels, task));
 }
 
+/// The names of the sequences in --data.
+std::set<std::string> sequences_in(const CompareFlags& options) {
+  std::optional<DatasetKind> kind = dataset_kind_option(options.dataset);
+  std::set<std::string> names;
+  for (const SequenceFolder& found : find_sequences(*options.data, {kind}, kind)) {
+    names.insert(found.name);
+  }
+  return names;
+}
+
+/// Without --data the scans are where the first run read them.
 std::vector<ObjectDisagreement> objects_of(const CompareFlags& options, const ResultSet& first,
                                            const ResultSet& second) {
-  std::optional<DatasetKind> kind = dataset_kind_option(options.dataset);
-  std::set<std::string> there;
-  for (const SequenceFolder& found : find_sequences(*options.data, {kind}, kind)) {
-    there.insert(found.name);
-  }
+  const auto there = options.data ? std::optional(sequences_in(options)) : std::nullopt;
   std::vector<ObjectDisagreement> objects;
   bool any = false;
   for (const Result& result : first.sequences) {
     const auto other = std::ranges::find(second.sequences, result.sequence, &Result::sequence);
     if (counted_scans(result).empty() || other == second.sequences.end()) continue;
-    if (!there.contains(result.sequence)) {
+    if (there && !there->contains(result.sequence)) {
       tell(fmt::format("{}: has no sequence {}; its objects are left out", options.data->string(),
                        result.sequence.text()));
       continue;
     }
     any = true;
-    std::ranges::move(objects_of(result, *other, *options.data), std::back_inserter(objects));
+    std::ranges::move(objects_of(result, *other, options.data), std::back_inserter(objects));
   }
   if (any) return objects;
-  throw DataError(*options.data, "has none of the sequences that both runs hold",
+  throw DataError(options.data.value_or(options.newer),
+                  "has none of the sequences that both runs hold",
                   "the data set of the runs in --data");
 }
 
@@ -128,15 +136,15 @@ void check_has_truth(const ResultSet& run) {
                   "where labels differ without truth");
 }
 
-/// Returns the scans and, with --data, the objects on which the runs disagree.
+/// Returns the scans or objects on which the runs disagree.
 Answer scans_and_objects(const CompareFlags& options) {
   const ResultSet first = chosen_run(options, options.baseline);
   const ResultSet second = chosen_run(options, options.newer);
   for (const ResultSet* run : {&first, &second}) check_has_truth(*run);
   const PairedRuns paired = pair_runs(first, second);
   check_shares_scans(paired, options);
-  const auto objects = options.shows("object") && options.data ? objects_of(options, first, second)
-                                                               : std::vector<ObjectDisagreement>{};
+  const auto objects = options.shows("object") ? objects_of(options, first, second)
+                                               : std::vector<ObjectDisagreement>{};
   return {.standing = standing_of(first, "first", second, "second"),
           .sheets = diff_sheets(options.baseline, options.newer, paired, objects, options.top),
           .json = json_text(diff_json(paired, objects, options.top))};

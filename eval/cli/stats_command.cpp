@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <deque>
+#include <functional>
 #include <memory>
 
 #include "core/base/thread_pool.hpp"
@@ -72,16 +73,36 @@ Answer answer_of(const StatsFlags& options, const Dataset& dataset, Standing sta
   return answer;
 }
 
+/// Throws UsageError where one of the flags was given that `passes` names: they would do nothing.
+void refuse_flags(const CLI::App& command, const char* expected,
+                  const std::function<bool(const CLI::Option&)>& passes) {
+  const std::string given = given_words(command, passes);
+  if (given.empty()) return;
+  throw UsageError(fmt::format("{}: {}", given.substr(1), expected));
+}
+
+/// Whether it says how data are read or scored.
+bool is_of_data(const CLI::Option& option) {
+  const std::string name = option.get_name();
+  return option.get_group() == kReadingGroup || name == "--dataset" || name == "--format" ||
+         name == "--protocol" || name == "--range";
+}
+
 /// A folder of results tells by itself how its data were read and scored.
 void refuse_flags_of_data(const CLI::App& command) {
-  const std::string given = given_words(command, [](const CLI::Option& option) {
-    const std::string name = option.get_name();
-    return option.get_group() == kReadingGroup || name == "--dataset" || name == "--format" ||
-           name == "--protocol" || name == "--range";
-  });
-  if (given.empty()) return;
-  throw UsageError(fmt::format("{}: is told by the results already, expected it with --predictions",
-                               given.substr(1)));
+  refuse_flags(command, "is told by the results already, expected it with --predictions",
+               is_of_data);
+}
+
+/// Throws UsageError for flags that say nothing to intervals, scans and thresholds.
+void refuse_flags_of_breakdown(const StatsFlags& options, const CLI::App& command) {
+  const bool has_curve = options.shows("threshold");
+  refuse_flags(command, "does nothing here, expected it with --by range, height or object",
+               [&](const CLI::Option& option) {
+                 const std::string name = option.get_name();
+                 return is_of_data(option) || name == "--predictions" || name == "--top" ||
+                        (name == "--data" && !has_curve);
+               });
 }
 
 Answer breakdown_of_run(const StatsFlags& options, const CLI::App& command) {
@@ -92,22 +113,13 @@ Answer breakdown_of_run(const StatsFlags& options, const CLI::App& command) {
                     options.input.string()));
   }
   refuse_flags_of_data(command);
-  const ResultSet run = load_result_set(options.input);
+  const ResultSet run = only(load_result_set(options.input), options.sequences);
   refuse_stale({run}, options.allow_stale);
-  std::vector<Result> results = read_results(options.input);
-  std::erase_if(results, [&](const Result& result) {
-    return !options.sequences.empty() &&
-           std::ranges::find(options.sequences, result.sequence.text()) == options.sequences.end();
-  });
-  if (results.empty()) {
-    throw UsageError(fmt::format("--sequences: {} has no results of {}, expected others",
-                                 options.input.string(), fmt::join(options.sequences, ",")));
-  }
   std::deque<ResultScans> scans;
   std::vector<SequenceBreakdown> breakdowns;
   BreakdownTask task{};
-  for (const Result& result : results) {
-    const ResultScans& opened = scans.emplace_back(result, std::nullopt);
+  for (const Result& result : run.sequences) {
+    const ResultScans& opened = scans.emplace_back(result, options.data);
     task = {opened.rule().protocol, opened.rule().range, options.threads};
     if (opened.scored_scans().empty()) continue;
     breakdowns.push_back(
@@ -122,6 +134,10 @@ Answer breakdown_of_run(const StatsFlags& options, const CLI::App& command) {
 
 Answer breakdown_of(const StatsFlags& options, const CLI::App& command) {
   if (!options.predictions) return breakdown_of_run(options, command);
+  if (options.data) {
+    throw UsageError(fmt::format("--data {}: RUN is the data set with --predictions, expected one",
+                                 options.data->string()));
+  }
   const Dataset dataset = open_dataset(options);
   const ScoreRule rule = rule_of(options.protocol, options.range, dataset.kind);
   const BreakdownTask task = {rule.protocol, rule.range, options.threads};
@@ -129,8 +145,8 @@ Answer breakdown_of(const StatsFlags& options, const CLI::App& command) {
                    all_breakdowns(options, dataset, task));
 }
 
-Answer curve(const StatsFlags& options) {
-  Answer answer = curve_answer(options.input, options.data);
+Answer curve(const StatsFlags& options, const ResultSet& run) {
+  Answer answer = curve_answer(run, options.data);
   if (options.picture) write_output(*options.picture, render(answer, Format::kPng));
   return answer_beside(options.picture.value_or(""), std::move(answer));
 }
@@ -142,11 +158,16 @@ Answer stats(StatsFlags options, const CLI::App& command) {
   if (options.shows("threshold") + options.shows("scan") + breaks_down > 1) {
     throw UsageError("--by: threshold and scan go with nothing else, expected one of them alone");
   }
+  if (options.picture && !options.shows("threshold")) {
+    throw UsageError(fmt::format("-o {}: is of a curve, expected it with --by threshold",
+                                 options.picture->string()));
+  }
   if (breaks_down) return breakdown_of(options, command);
+  refuse_flags_of_breakdown(options, command);
   if (options.picture) check_output(*options.picture, Format::kPng);
-  const ResultSet run = load_result_set(options.input);
+  const ResultSet run = only(load_result_set(options.input), options.sequences);
   refuse_stale({run}, options.allow_stale);
-  if (options.shows("threshold")) return curve(options);
+  if (options.shows("threshold")) return curve(options, run);
   return statistics_answer(run, options.shows("scan"));
 }
 

@@ -39,16 +39,37 @@ std::string content_of(const Sequence& sequence) {
   return hash_of_text(listing);
 }
 
+constexpr std::string_view kOfScene = "scene ";
+
+/// "scene 5f3a... seed 7": one drive, whatever its layout and length.
+std::string simulated_drive(const std::string& scene_fingerprint, std::uint64_t seed) {
+  return fmt::format("{}{} seed {}", kOfScene, scene_fingerprint, seed);
+}
+
+/// What tells recorded scans from others: scans of one size may have other points.
+std::string drive_of(const Sequence& sequence, const std::string& content) {
+  if (const auto& origin = sequence.simulated()) {
+    return simulated_drive(origin->scene_fingerprint, origin->seed);
+  }
+  constexpr std::uintmax_t kMostBytes = 1U << 26U;
+  const std::vector<fs::path> files = sequence.files();
+  const bool is_scan = !files.empty() && size_of(files.front()) <= kMostBytes;
+  return content + (is_scan ? " " + hash_of_file(files.front()) : "");
+}
+
 /// What a cell has to say of a sequence on disk. One that cannot be opened says why.
-ordered_json sequence_json(const Data& data, const std::string& name) {
+ordered_json sequence_json(const Data& data, const std::string& name, std::string& drive) {
   try {
     Reading reading = data.reading;
     const bool refines = std::exchange(reading.refine_poses, false);  // which reads all scans
     const Dataset dataset = open_dataset(data.path, {data.kind, {name}, reading});
     if (reading.pose_file() != nullptr) reading.poses = OwnPoses{};
     reading.refine_poses = refines;
+    const Sequence& sequence = *dataset.sequences.front();
+    const std::string content = content_of(sequence);
+    drive = drive_of(sequence, content);
     return {{"dataset", to_string(dataset.kind)},
-            {"content", content_of(*dataset.sequences.front())},
+            {"content", content},
             {"reading", told_json(reading)}};
   } catch (const std::runtime_error& error) {  // DataError, or UsageError of what it lacks
     return {{"unreadable", error.what()}};
@@ -59,6 +80,7 @@ struct KnownSequence {
   DatasetKind kind;
   std::string name;
   ordered_json input;  ///< what its key says of it
+  std::string drive;   ///< see StudyCell; empty where it cannot be read
 };
 
 /// Throws UsageError for a sequence that the simulation does not write.
@@ -69,13 +91,14 @@ std::vector<KnownSequence> simulated_sequences(const StudyData& data) {
   const std::vector<std::string>& wanted = data.data.sequences;
   const ordered_json json = {{"simulated", simulation_json(simulation)},
                              {"reading", told_json(data.data.reading)}};
+  const std::string scene = hash_of_text(format_scene(load_scene(simulation.scene)));
   std::vector<KnownSequence> sequences;
   for (const std::string& name : wanted.empty() ? written : wanted) {
     if (std::ranges::find(written, name) == written.end()) {
       throw UsageError(fmt::format("{}: simulates no sequence {}, expected {}", data.name,
                                    mosbench::quoted(name), fmt::join(written, ", ")));
     }
-    sequences.push_back({simulation.layout, name, json});
+    sequences.push_back({simulation.layout, name, json, simulated_drive(scene, simulation.seed)});
   }
   return sequences;
 }
@@ -87,7 +110,8 @@ std::vector<KnownSequence> sequences_of(const StudyData& data) {
   const OpenOptions options{data.data.kind, data.data.sequences, data.data.reading};
   try {
     for (const SequenceFolder& folder : find_sequences(data.data.path, options, kind)) {
-      sequences.push_back({*kind, folder.name, sequence_json(data.data, folder.name)});
+      KnownSequence& known = sequences.emplace_back(KnownSequence{*kind, folder.name, {}, ""});
+      known.input = sequence_json(data.data, folder.name, known.drive);
     }
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", data.name, error.what()));
@@ -109,6 +133,7 @@ class CellLister {
     StudyCell cell = {.data = &data,
                       .kind = sequence.kind,
                       .sequence = sequence.name,
+                      .drive = sequence.drive,
                       .method = &method,
                       .odometry = odometry ? std::string(odometry->kind->name) : ""};
     cell.job = {
@@ -249,6 +274,27 @@ std::string missing_keys(const Study& study, const std::vector<RuledCells>& grou
       study.file.string(), rules, missing_keys(study, groups)));
 }
 
+/// Refuses copies, parts and other layouts of what is tuned on. One simulation may write several
+/// sequences, which are others.
+void check_drives(const Study& study, const std::vector<StudyCell>& cells) {
+  std::map<std::string, const StudyCell*> tuned;
+  for (const StudyCell& cell : cells) {
+    if (!cell.drive.empty() && names_sequence(study.tuning->tune_on, cell)) {
+      tuned.emplace(cell.drive, &cell);
+    }
+  }
+  for (const StudyCell& cell : cells) {
+    const auto same = tuned.find(cell.drive);
+    if (same == tuned.end() || !names_sequence(study.tuning->judge_on, cell)) continue;
+    if (cell.data == same->second->data && cell.drive.starts_with(kOfScene)) continue;
+    throw UsageError(
+        fmt::format("{}: best_of tunes on \"{}\" and judges on \"{}\", which are the same drive, "
+                    "expected others "
+                    "in judge_on",
+                    study.file.string(), same->second->sequence_label(), cell.sequence_label()));
+  }
+}
+
 /// Refuses names of no sequence, and sequences that are judged on which settings are chosen.
 void check_tuning(const Study& study, const std::vector<StudyCell>& cells) {
   std::vector<std::string> known;
@@ -261,6 +307,7 @@ void check_tuning(const Study& study, const std::vector<StudyCell>& cells) {
         fmt::format("{}: best_of tunes and judges on sequence \"{}\", expected others in judge_on",
                     study.file.string(), label));
   }
+  check_drives(study, cells);
   for (const auto& names : {study.tuning->tune_on, study.tuning->judge_on}) {
     for (const std::string& name : names) {
       const auto is_named = [&](const StudyCell& cell) { return names_sequence({name}, cell); };

@@ -14,6 +14,7 @@ struct StudyCell {
   const StudyData* data = nullptr;
   DatasetKind kind = DatasetKind::kRecording;  ///< of the data
   std::string sequence;
+  std::string drive = {};  ///< tells its scans from others', also under another name or elsewhere
   const StudyMethod* method = nullptr;
   std::string odometry;             ///< empty: the poses of the data
   const StudyAxis* axis = nullptr;  ///< null where nothing is changed

@@ -95,9 +95,10 @@ TunedPreset read_tuned_preset(const std::filesystem::path& file) {
 bool is_preset_file(const std::string& preset) { return preset.ends_with(".json"); }
 
 std::string tuning_doubt(const TunedPreset& preset, const Result& result) {
+  const std::string simulation = simulation_of(result);
   const auto named = std::ranges::find_if(preset.tuned_on, [&](const TunedSequence& one) {
-    return one.dataset == result.dataset && one.sequence == result.sequence.text() &&
-           one.simulation == simulation_of(result);
+    const bool has_name = one.dataset == result.dataset && one.sequence == result.sequence.text();
+    return one.simulation == simulation && (has_name || !simulation.empty());
   });
   const auto same = std::ranges::find(preset.tuned_on, result.from.fingerprint_without_poses,
                                       &TunedSequence::fingerprint);
@@ -106,8 +107,9 @@ std::string tuning_doubt(const TunedPreset& preset, const Result& result) {
                        same->label);
   }
   if (named == preset.tuned_on.end()) return "";
-  return fmt::format("tuned on a sequence of this name: {} chose its settings on {}",
-                     preset.file.string(), named->label);
+  return fmt::format("tuned on a sequence of this {}: {} chose its settings on {}",
+                     simulation.empty() ? "name" : "simulation", preset.file.string(),
+                     named->label);
 }
 
 }  // namespace mosbench

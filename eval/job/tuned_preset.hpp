@@ -42,7 +42,8 @@ TunedPreset read_tuned_preset(const std::filesystem::path& file);
 bool is_preset_file(const std::string& preset);
 
 /// Returns the doubt about a result with these settings on a sequence that they were chosen on:
-/// also where only its name tells, as of another part of it. Empty for other sequences.
+/// also where only its name or its simulation tells, as of another part of it. Empty for other
+/// sequences.
 std::string tuning_doubt(const TunedPreset& preset, const Result& result);
 
 }  // namespace mosbench

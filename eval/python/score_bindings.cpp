@@ -101,7 +101,7 @@ py::list sequence_results(const ResultSet& set) {
                               "header"_a = header_json(result).dump(),
                               "metrics"_a = dict_of(aggregate(*result.protocol, counts)),
                               "method_ms_per_scan"_a = method_ms_per_scan(result),
-                              "warnings"_a = doubts_of(result), "scans"_a = scans));
+                              "warnings"_a = notices_of(result), "scans"_a = scans));
   }
   return sequences;
 }

@@ -92,7 +92,7 @@ std::vector<std::string> title_of(const Result& result, std::size_t scan_index) 
     lines.emplace_back("without truth");
   }
   if (result.is_simulated()) lines.emplace_back("simulated");
-  std::ranges::move(doubts_of(result), std::back_inserter(lines));
+  std::ranges::move(notices_of(result), std::back_inserter(lines));
   return lines;
 }
 

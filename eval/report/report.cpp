@@ -44,7 +44,7 @@ ordered_json result_json(const Result& result) {
   }
   json["estimates"] = estimates_of(result);
   json["result"] = shown_result(result);
-  json["doubts"] = doubts_of(result);
+  json["doubts"] = notices_of(result);
   return json;
 }
 

@@ -134,12 +134,12 @@ std::optional<ScoreCurve> curve_of_results(std::span<const Result> results,
   return counts.curve();
 }
 
-Answer curve_answer(const std::filesystem::path& path,
+Answer curve_answer(const ResultSet& run,
                     const std::optional<std::filesystem::path>& dataset_root) {
-  const ResultSet run = load_result_set(path);
   const std::optional<ScoreCurve> found = curve_of_results(run.sequences, dataset_root);
   if (!found) {
-    throw DataError(path, "no point moves in the truth", "scans with truth in which points move");
+    throw DataError(run.path, "no point moves in the truth",
+                    "scans with truth in which points move");
   }
   const ScoreCurve& curve = *found;
   const Confusion& counts = curve.points.back().counts;

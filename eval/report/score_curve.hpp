@@ -24,8 +24,7 @@ std::optional<ScoreCurve> curve_of_results(std::span<const Result> results,
 /// Reads scans, truth, labels and scores of a run again, and says precision at levels of recall;
 /// CSV and the chart have the points of the thinned curve. Throws DataError as ResultScans does,
 /// where the run kept no scores, where no scan has truth, and where no point moves.
-Answer curve_answer(const std::filesystem::path& path,
-                    const std::optional<std::filesystem::path>& dataset_root);
+Answer curve_answer(const ResultSet& run, const std::optional<std::filesystem::path>& dataset_root);
 /// Returns what a chart needs, each list by falling threshold: "recall", "precision" and
 /// "threshold", "average_precision", "best", "labels".
 nlohmann::ordered_json drawn_curve_json(const ScoreCurve& curve);

@@ -232,6 +232,10 @@ std::string split_warning(const std::string& split);
 /// protocol does not know, one class alone in the truth, poses that odometry does not trust.
 std::vector<std::string> doubts_of(const Result& result);
 
+/// What has to be said wherever numbers of one result are shown: which scans are not counted, and
+/// doubts.
+std::vector<std::string> notices_of(const Result& result);
+
 /// Returns the first file of the program that made a result that holds something else by now;
 /// nothing where it is gone, as on another machine.
 std::optional<std::filesystem::path> changed_program_file(const Result& result);
@@ -250,6 +254,10 @@ std::vector<std::string> told(const std::vector<Doubt>& doubts);
 std::vector<std::string> shortfalls(const ResultSet& set);
 /// What has to be said wherever numbers of the set are shown: shortfalls and doubts.
 std::vector<std::string> warnings(const ResultSet& set);
+
+/// Returns the sequences of these names, all where there are none. Throws DataError for a name that
+/// the set does not have.
+ResultSet only(ResultSet set, const std::vector<std::string>& names);
 
 /// What every format has to show beside numbers of the set.
 Standing standing_of(const ResultSet& set);

@@ -128,15 +128,41 @@ std::vector<std::string> told(const std::vector<Doubt>& doubts) {
   return lines;
 }
 
-std::vector<std::string> shortfalls(const ResultSet& set) {
+namespace {
+
+std::vector<std::string> shortfalls(std::size_t missing, const std::optional<std::string>& split) {
   std::vector<std::string> texts;
-  if (const std::size_t missing = missing_predictions(set); missing > 0) {
-    texts.push_back(incomplete_warning(missing));
-  }
+  if (missing > 0) texts.push_back(incomplete_warning(missing));
+  if (split) texts.push_back(split_warning(*split));
+  return texts;
+}
+
+}  // namespace
+
+std::vector<std::string> notices_of(const Result& result) {
+  std::vector<std::string> texts = shortfalls(result.missing_predictions(), only_split(result));
+  std::ranges::move(doubts_of(result), std::back_inserter(texts));
+  return texts;
+}
+
+std::vector<std::string> shortfalls(const ResultSet& set) {
   const auto with_split = std::ranges::find_if(
       set.sequences, [](const Result& sequence) { return only_split(sequence).has_value(); });
-  if (with_split != set.sequences.end()) texts.push_back(split_warning(*only_split(*with_split)));
-  return texts;
+  return shortfalls(missing_predictions(set),
+                    with_split != set.sequences.end() ? only_split(*with_split) : std::nullopt);
+}
+
+ResultSet only(ResultSet set, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    const bool is_there = std::ranges::any_of(
+        set.sequences, [&](const Result& result) { return result.sequence.text() == name; });
+    if (is_there) continue;
+    throw DataError(set.path, "has no sequence " + name, "those that --sequences names");
+  }
+  std::erase_if(set.sequences, [&](const Result& result) {
+    return !names.empty() && std::ranges::find(names, result.sequence.text()) == names.end();
+  });
+  return set;
 }
 
 std::vector<std::string> warnings(const ResultSet& set) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "datasets/disk/files.hpp"
@@ -20,6 +21,17 @@ fs::path preset_file(const fs::path& out, std::string label) {
   std::ranges::replace_if(
       label, [](char c) { return c == ' ' || c == '/' || c == ':'; }, '-');
   return out / (label + ".preset.json");
+}
+
+/// Labels may differ in what a file's name cannot hold.
+void name_apart(std::vector<StudyChoice>& choices) {
+  std::map<fs::path, int> known;
+  for (StudyChoice& choice : choices) {
+    if (!choice.preset) continue;
+    fs::path& file = choice.preset->file;
+    const int same = ++known[file];
+    if (same > 1) file.replace_filename(fmt::format("{}-{}", same, file.filename().string()));
+  }
 }
 
 /// Chooses the settings of one row.
@@ -139,6 +151,7 @@ std::vector<StudyChoice> choices_of(const StudyPlan& plan, const DoneCells& cell
     StudyChoice choice = Chooser(plan, cells, grid, label).run();
     if (choice.candidates > 0) choices.push_back(std::move(choice));
   }
+  name_apart(choices);
   return choices;
 }
 

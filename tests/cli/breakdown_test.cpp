@@ -82,8 +82,34 @@ TEST(Breakdown, OfAFolderOfResultsFindsDataLabelsAndRules) {
   const cli::Answer twice = cli::run({"breakdown", run, "--protocol", "mapmos"});
   EXPECT_EQ(twice.exit_code, 2);
   EXPECT_THAT(twice.err, HasSubstr("--protocol mapmos: is told by the results already"));
-  EXPECT_EQ(cli::run({"breakdown", run, "--sequences", "hall"}).exit_code, 2);
+  const cli::Answer hall = cli::run({"breakdown", run, "--sequences", "hall"});
+  EXPECT_EQ(hall.exit_code, 3);
+  EXPECT_THAT(hall.err, HasSubstr("run: has no sequence hall"));
   EXPECT_THAT(cli::run({"breakdown", folder / "room"}).err, HasSubstr("--predictions: is missing"));
+}
+
+TEST(Stats, RefusesWhatItWouldPassOverAndReadsDataElsewhere) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "room", kScansOfBreakdown);
+  const std::string run = folder / "run";
+  ASSERT_EQ(cli::run({"run", folder / "room", "--out", run}).exit_code, 0);
+  const auto refusal = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), {"stats", run});
+    const cli::Answer answer = cli::run(words);
+    EXPECT_EQ(answer.exit_code, 2) << answer.out;
+    return answer.err;
+  };
+  EXPECT_THAT(refusal({"--protocol", "mapmos"}), HasSubstr("--protocol mapmos: does nothing here"));
+  EXPECT_THAT(refusal({"--data", run}), HasSubstr("--data"));
+  EXPECT_THAT(refusal({"--by", "scan", "--top", "3"}), HasSubstr("--top 3: does nothing here"));
+  EXPECT_THAT(refusal({"--by", "range", "-o", "x.png"}), HasSubstr("-o x.png: is of a curve"));
+  EXPECT_THAT(cli::run({"stats", run, "--sequences", "hall"}).err,
+              HasSubstr("has no sequence hall"));
+  std::filesystem::create_directories(folder / "moved");
+  std::filesystem::rename(folder / "room", folder / "moved/room");
+  EXPECT_EQ(cli::run({"stats", run, "--by", "range"}).exit_code, 3);
+  EXPECT_EQ(cli::run({"stats", run, "--by", "range", "--data", folder / "moved"}).exit_code, 0);
+  EXPECT_EQ(cli::run({"stats", run, "--sequences", "room"}).exit_code, 0);
 }
 
 }  // namespace

@@ -178,6 +178,40 @@ TEST_F(Compare, WritesTestCasesAndAppendsToASummary) {
   EXPECT_EQ(compare("out", {"--summary", (folder_ / "room").string()}).exit_code, 3);
 }
 
+/// CI servers must not take the answer of a run before for that of this one.
+TEST_F(Compare, WritesThatItCouldNotJudge) {
+  run_again("coarse", {"--set", "voxel_size_m=0.4"});
+  const fs::path xml = folder_ / "gate.xml", summary = folder_ / "summary.md";
+  ASSERT_EQ(compare("out", {"--out", xml.string()}).exit_code, 0);
+  const cli::Answer refused =
+      compare("coarse", {"--out", xml.string(), "--as", "github", "--summary", summary.string()});
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("voxel_size_m: 0.25 -> 0.4"));
+  EXPECT_THAT(refused.out, HasSubstr("::error title=MOS gate%3A not judged::"));
+  EXPECT_THAT(read_file(xml), AllOf(HasSubstr("tests=\"1\" failures=\"0\" errors=\"1\""),
+                                    HasSubstr("<error message=\"MOS gate: not judged: ")));
+  EXPECT_THAT(read_file(summary), testing::StartsWith("### MOS gate: not judged\n"));
+  const auto json = nlohmann::json::parse(compare("coarse", {"--json"}).out);
+  EXPECT_EQ(json.at("passed"), false);
+  EXPECT_THAT(json.at("error").get<std::string>(), HasSubstr("is not like"));
+  EXPECT_EQ(compare("coarse", {"-q"}).out, "");
+  EXPECT_EQ(compare("out", {"--max-cost", "cpu=x", "--out", xml.string()}).exit_code, 2);
+  EXPECT_THAT(read_file(xml), HasSubstr("errors=\"1\""));
+}
+
+TEST_F(Compare, WritesWhatDiffersWhereItIsAsked) {
+  run_again("coarse", {"--set", "voxel_size_m=0.4"});
+  const fs::path json = folder_ / "by.json", summary = folder_ / "summary.md";
+  const cli::Answer by = compare(
+      "coarse", {"--by", "sequence", "--out", json.string(), "--summary", summary.string()});
+  EXPECT_EQ(by.exit_code, 0) << by.err;
+  EXPECT_TRUE(nlohmann::json::parse(read_file(json)).contains("difference"));
+  EXPECT_THAT(read_file(summary), HasSubstr("| iou |"));
+  const cli::Answer xml = compare("coarse", {"--by", "scan", "--out", "x.xml"});
+  EXPECT_EQ(xml.exit_code, 2);
+  EXPECT_THAT(xml.err, HasSubstr("x.xml: test cases are of a gate"));
+}
+
 TEST_F(Compare, RefusesUnlikeResultsUnlessTold) {
   run_again("coarse", {"--set", "voxel_size_m=0.4"});
   const cli::Answer setting = compare("coarse");

@@ -48,6 +48,13 @@ TEST_F(Diff, HeadsItsColumnsWithTheNamesOfTheRuns) {
   EXPECT_THAT(answer.out, testing::ContainsRegex("delay_0 found +delay_2 found"));
 }
 
+TEST_F(Diff, FindsTheObjectsWhereTheFirstRunReadThem) {
+  const cli::Answer answer =
+      cli::run({"compare", folder_ / "delay_0", folder_ / "delay_2", "--by", "object", "--json"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(nlohmann::json::parse(answer.out).at("disagreeing_objects"), 1);
+}
+
 TEST_F(Diff, RefusesADataSetThatIsNotTheOneOfTheRuns) {
   cli::write_small_sequence(folder_ / "hall", 12);
   const cli::Answer other = diff("hall");

@@ -333,6 +333,8 @@ TEST(Report, ShowsOnlyTheScansThatWereScored) {
   EXPECT_EQ(rows.at(2).at("stem"), "000002");
   EXPECT_FALSE(rows.at(2).contains("tp"));
   EXPECT_TRUE(rows.at(3).contains("tp"));
+  EXPECT_THAT(content.at("results").at(0).at("doubts").dump(),
+              HasSubstr("INCOMPLETE: 2 scans without usable prediction are not counted"));
   const cli::Answer render =
       cli::run({"render", folder / "net", "--scan", "2", "-o", folder / "2.png"});
   EXPECT_EQ(render.exit_code, 2);

@@ -98,6 +98,33 @@ TEST_F(Tuning, RefusesPresetsOfAnotherMethodAndOtherFiles) {
   EXPECT_THAT(cheat.err, HasSubstr("best_of tunes and judges on sequence \"small 00\""));
 }
 
+/// Another folder, name or number of scans makes no other drive.
+TEST_F(Tuning, RefusesToJudgeOnWhatItWasTunedOn) {
+  const auto refusal = [&](const std::string& data, const std::string& judge_on) {
+    folder_.write("s.yaml",
+                  "name: tune\nprotocol: semantickitti-mos\nmethods: [underwood]\n"
+                  "grid: {max_range_m: [3, 40]}\ndata:\n" +
+                      data + "best_of: {metric: iou, tune_on: [a], judge_on: [" + judge_on +
+                      "]}\n");
+    const cli::Answer answer = run({"run", path("s.yaml"), "--out", path("out")});
+    EXPECT_EQ(answer.exit_code, 2) << answer.out;
+    return answer.err;
+  };
+  fs::create_directories(folder_ / "copy/sequences");
+  fs::copy(folder_ / "data/sequences/00", folder_ / "copy/sequences/77",
+           fs::copy_options::recursive);
+  const std::string copies = R"(- {name: a, path: data, dataset: semantickitti, sequences: ["00"]}
+- {name: b, path: copy, dataset: semantickitti}
+)";
+  EXPECT_THAT(refusal(copies, "b"), HasSubstr("tunes on \"a 00\" and judges on \"b 77\", which are "
+                                              "the same drive"));
+  const std::string simulated =
+      R"(- {name: a, simulate: {layout: semantickitti, scene: room, scans: 6, seed: 3}}
+- {name: b, simulate: {layout: doals, scene: room, scans: 8, seed: 3}}
+)";
+  EXPECT_THAT(refusal(simulated, "b"), HasSubstr("which are the same drive"));
+}
+
 TEST_F(Tuning, GivesAProgramItsSettings) {
   const std::string client = std::string(MOSBENCH_SOURCE_DIR) + "/tests/examples/exec/client.py";
   const std::string program = "exec:/usr/bin/python3 " + client;

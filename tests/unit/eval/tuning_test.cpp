@@ -197,6 +197,12 @@ TEST(TunedPresets, AreReadAsTheyAreWritten) {
   EXPECT_THAT(tuning_doubt(read, result), HasSubstr("tuned on a sequence of this name: "));
   result.sequence = SequenceName("09", file);
   EXPECT_EQ(tuning_doubt(read, result), "");
+  TunedPreset simulated = read;
+  result.from.simulated = SimulatedOrigin{"doals", "room", "f", 9, 5};
+  EXPECT_EQ(tuning_doubt(simulated, result), "");
+  simulated.tuned_on[0].simulation = simulation_of(result);
+  EXPECT_THAT(tuning_doubt(simulated, result),
+              HasSubstr("tuned on a sequence of this simulation: "));
 }
 
 TEST(TunedPresets, AreRefusedWithTheirFile) {
