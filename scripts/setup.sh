@@ -28,16 +28,14 @@ case "${1:-}" in
     packages+=(pybind11-dev python3-dev python3-numpy python3-pytest python3-h5py python3-matplotlib
       python3-pandas python3-pip python3-venv python3-setuptools python3-wheel)
     ;;
-  --checks) packages+=(clang clang-format clang-tidy doxygen mypy python3-numpy) ;;
+  --checks) packages+=(clang clang-format clang-tidy doxygen mypy python3-numpy) with_types=1 ;;
   --package) packages+=(pybind11-dev python3-dev python3-numpy dpkg-dev lintian mmdebstrap) ;;
   --cluster) packages+=(snakemake slurm-wlm munge) ;;
   *) echo "usage: setup.sh [--python|--tests|--checks|--package|--page|--cluster]" >&2; exit 2 ;;
 esac
 with_page=$(case "${1:-}" in --page | --tests) echo 1 ;; esac)
-if [ -n "$with_page" ]; then
-  packages+=(chromium fonts-dejavu-core util-linux)
-  command -v npm >/dev/null || packages+=(nodejs npm)
-fi
+[ -z "$with_page" ] || packages+=(chromium fonts-dejavu-core util-linux)
+if [ -n "$with_page${with_types:-}" ] && ! command -v npm >/dev/null; then packages+=(nodejs npm); fi
 
 give_up() {
   echo "setup.sh: $1; these Debian packages must be installed first:" >&2
@@ -99,3 +97,4 @@ if [ -n "$with_page" ]; then
   install_node_packages eval/report/page "the report's page"
   install_node_packages tests/ros2 "ROS 2 bags of other writers"
 fi
+[ -z "${with_types:-}" ] || install_node_packages tests/python "Python's types"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Checks the types of the Python package, and of its examples against them, by `mypy --strict`.
+"""Checks the types of the Python package, and of its examples against them, by `mypy --strict` and pyright.
 
-Debian's Python has mypy and numpy: scripts/setup.sh --checks installs both.
+Debian's Python has mypy and numpy: scripts/setup.sh --checks installs both, and pyright.
 """
 
 import pathlib
@@ -10,6 +10,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PYTHON = "/usr/bin/python3" if pathlib.Path("/usr/bin/python3").exists() else sys.executable
+PYRIGHT = ROOT / "tests/python/node_modules/.bin/pyright"
 MYPY = [PYTHON, "-m", "mypy", "--cache-dir=build/mypy"]
 
 
@@ -25,4 +26,8 @@ if subprocess.run([*MYPY, "--version"], capture_output=True, check=False).return
 failed = subprocess.run(MYPY, cwd=ROOT, check=False).returncode
 for file in examples():
     failed |= subprocess.run([*MYPY, "--strict", str(file.relative_to(ROOT))], cwd=ROOT, check=False).returncode
+if PYRIGHT.exists():
+    failed |= subprocess.run([PYRIGHT, "--pythonpath", PYTHON], cwd=ROOT, check=False).returncode
+else:
+    print("not checked by pyright: scripts/setup.sh --checks installs it")
 sys.exit(1 if failed else 0)

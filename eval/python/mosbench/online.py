@@ -12,7 +12,7 @@ import numpy as np
 
 from mosbench import _mosbench
 from mosbench.arrays import Array, as_array
-from mosbench.datasets import open as open_data
+from mosbench.datasets import Scan, open as open_data
 from mosbench.datasets import seconds_after_stamp
 from mosbench.flags import plain_errors, whole_number
 
@@ -295,7 +295,7 @@ def odometry(scans: Iterable[Any], kind: str = "simple", **options: Any) -> Arra
     engine = Odometry(kind, **options)
     poses = []
     for index, scan in enumerate(scans):
-        if hasattr(scan, "points"):
+        if isinstance(scan, Scan):
             found = engine.push(scan.points, scan.stamp_ns, scan.point_times_ns)
         elif isinstance(scan, tuple):
             times_s = seconds_after_stamp(scan[1], len(scan[0]), index)

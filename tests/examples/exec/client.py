@@ -14,16 +14,16 @@ SHIFT = 1 << 20  # voxels per axis, half of them negative
 
 
 def read_exactly(count):
-    """Returns so many bytes of stdin; nothing when it was closed."""
+    """Returns so many bytes of stdin; none when it was closed."""
     data = sys.stdin.buffer.read(count)
-    return data if len(data) == count else None
+    return data if len(data) == count else b""
 
 
 def receive():
-    """Returns tag and payload of the next message; (None, None) after the last."""
+    """Returns tag and payload of the next message; both empty after the last."""
     header = read_exactly(16)
-    if header is None:
-        return None, None
+    if not header:
+        return b"", b""
     tag, size = struct.unpack("<8sQ", header)
     return tag, read_exactly(size)
 
@@ -59,7 +59,7 @@ def main():
     seen = set()
     while True:
         tag, payload = receive()
-        if tag is None:
+        if not tag:
             return
         index, stamp_ns = struct.unpack_from("<Qq", payload)
         map_from_sensor = np.frombuffer(payload, "<f8", 12, 16).reshape(3, 4)
