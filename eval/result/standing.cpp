@@ -40,6 +40,18 @@ std::string names_text(const std::vector<std::string>& names) {
                      all ? names.back() : fmt::format("{} more", names.size() - listed));
 }
 
+/// Older results do not say among their doubts that their data were disturbed.
+void add_disturbance(const Result& result, std::vector<std::string>& doubts) {
+  const auto says = [](const std::string& doubt) { return doubt.starts_with(kDisturbedDoubt); };
+  if (std::ranges::any_of(doubts, says)) return;
+  DataMark mark{result.from.simulated, ""};
+  if (mark.simulated) mark.disturbed = mark.simulated->perturb.value_or("");
+  for (const auto& [name, value] : result.from.reading) {
+    if (name == "perturb") mark = disturbed_by(std::move(mark), value);
+  }
+  if (std::string doubt = disturbed_doubt(mark); !doubt.empty()) doubts.push_back(std::move(doubt));
+}
+
 void add_doubts_of_truth(const Result& result, std::vector<std::string>& doubts) {
   const SequenceCounts counts = counts_of(result);
   Confusion all;
@@ -76,6 +88,7 @@ std::string split_warning(const std::string& split) {
 
 std::vector<std::string> doubts_of(const Result& result) {
   std::vector<std::string> doubts = result.doubts;
+  add_disturbance(result, doubts);
   if (const auto changed = changed_program_file(result)) {
     doubts.push_back(fmt::format("STALE: {} has changed since", changed->string()));
   }
