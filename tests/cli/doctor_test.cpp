@@ -199,7 +199,7 @@ TEST_F(DoctorCommand, RefusesWhatIsNoFolderAsUnusable) {
   EXPECT_THAT(answer.out, HasSubstr("is no folder that can be listed"));
 }
 
-TEST(DoctorCommand, SaysThatDataAreSimulatedAndDisturbed) {
+TEST(DoctorMarks, AreThoseOfSimulatedAndDisturbedData) {
   const TempFolder folder;
   const std::string noise = "range_noise_m=0.01,seed=3", data = folder / "sim";
   ASSERT_EQ(cli::run({"simulate", "--layout", "semantickitti", "--scene", "room", "--scans", "6",
