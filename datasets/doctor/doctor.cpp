@@ -125,6 +125,14 @@ class Examination {
     });
   }
 
+  /// Says that no sensor measured the data so.
+  static void add_mark(const DataMark& mark, std::vector<std::string>& remarks) {
+    if (const auto& origin = mark.simulated) {
+      remarks.push_back(fmt::format("simulated: scene {}, seed {}", origin->scene, origin->seed));
+    }
+    if (!mark.disturbed.empty()) remarks.push_back(disturbed_doubt(mark));
+  }
+
   /// Opens and checks sequences, of those without poses what needs none.
   void check_opened(const OpenOptions& options, const std::vector<SequenceFolder>& folders) {
     Dataset dataset = open_dataset(path_, options);
@@ -139,6 +147,7 @@ class Examination {
       part.remarks = sequence.remarks();
       const std::vector<std::string>& doubts = sequence.recording().doubts;
       part.remarks.insert(part.remarks.end(), doubts.begin(), doubts.end());
+      add_mark(mark_as_read(sequence), part.remarks);
       part.labelled_scans = scans_with_truth(sequence).size();
       part.facts = folder_facts_[folders[i].name];
       part.has_poses = !options.reading.is_by_odometry();

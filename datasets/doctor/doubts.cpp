@@ -23,6 +23,9 @@ std::int64_t step_ns(const Sequence& sequence, std::size_t scan_index) {
 
 std::vector<std::string> doubts_of(const Sequence& sequence) {
   std::vector<std::string> doubts = sequence.recording().doubts;
+  if (std::string disturbed = disturbed_doubt(mark_as_read(sequence)); !disturbed.empty()) {
+    doubts.insert(doubts.begin(), std::move(disturbed));
+  }
   Facts facts;
   examine_stamps(sequence, facts);
   const std::vector<ScanEntry>& scans = sequence.recording().scans;

@@ -38,7 +38,7 @@ std::string labels_in_npz(std::string_view bytes, const fs::path& file) {
 }
 
 std::vector<std::uint32_t> labels_of(const NumpyArray& array, const fs::path& file) {
-  if (!array.is_boolean) return label_ids(array.numbers, file);
+  if (array.kind != NumpyKind::kBooleans) return label_ids(array.numbers, file);
   std::vector<std::uint32_t> labels;
   for (const double moves : array.numbers) {
     labels.push_back(moves != 0.0 ? kMovingLabel : kStaticLabel);

@@ -105,6 +105,27 @@ constexpr std::array kNumpyTypes = {numpy_type<std::uint8_t>("b1"),  numpy_type<
                                     numpy_type<std::uint64_t>("u8"), numpy_type<Eigen::half>("f2"),
                                     numpy_type<float>("f4"),         numpy_type<double>("f8")};
 
+/// What a header says of the numbers.
+struct NumpyNumbers {
+  const NumpyType* type;
+  bool is_big_endian;
+
+  NumpyKind kind() const {
+    const char letter = type->name.front();
+    return letter == 'b'   ? NumpyKind::kBooleans
+           : letter == 'f' ? NumpyKind::kReals
+                           : NumpyKind::kIntegers;
+  }
+};
+
+NumpyNumbers numbers_in(std::string_view header, const fs::path& file) {
+  const std::string_view descr = value_of(header, "'descr': '", '\'', file);
+  const std::string_view name = descr.substr(std::min<std::size_t>(1, descr.size()));
+  const auto type = std::ranges::find(kNumpyTypes, name, &NumpyType::name);
+  if (type == kNumpyTypes.end()) refuse_npy(file, fmt::format("holds numbers of type {}", descr));
+  return {&*type, descr.front() == '>'};
+}
+
 /// What the end of a zip archive's central directory says of a member.
 struct ZipEntry {
   std::string name;
@@ -204,30 +225,38 @@ std::string unpacked(std::string_view bytes, const ZipEntry& entry, const fs::pa
   std::optional<std::string> whole;
   if (entry.method == kStored && entry.packed_bytes == entry.bytes) whole = std::string(packed);
   if (entry.method == kDeflated) whole = inflated(packed, entry.bytes);
-  if (!whole) fail();
-  return *std::move(whole);
+  if (whole) return *std::move(whole);
+  if (entry.method != kStored && entry.method != kDeflated) {
+    refuse_npz(file, fmt::format("packs its member {} by the method {}",
+                                 mosbench::quoted(entry.name), entry.method));
+  }
+  refuse_npz(file, fmt::format("its member {} has {} bytes, which do not unpack to the {} that the "
+                               "archive states",
+                               mosbench::quoted(entry.name), entry.packed_bytes, entry.bytes));
 }
 
 }  // namespace
 
 NumpyArray parse_npy(std::string_view bytes, const fs::path& file) {
   const NpyParts parts = split_npy(bytes, file);
-  const std::string_view descr = value_of(parts.header, "'descr': '", '\'', file);
-  const std::string_view name = descr.substr(std::min<std::size_t>(1, descr.size()));
-  const auto type = std::ranges::find(kNumpyTypes, name, &NumpyType::name);
-  if (type == kNumpyTypes.end()) refuse_npy(file, fmt::format("holds numbers of type {}", descr));
+  const NumpyNumbers numbers = numbers_in(parts.header, file);
+  const NumpyType* type = numbers.type;
   const std::uint64_t count = count_in(value_of(parts.header, "'shape': (", ')', file), file);
   if (parts.numbers.size() % type->size_bytes != 0 ||
       parts.numbers.size() / type->size_bytes != count) {
     throw DataError(file, fmt::format("has {} bytes behind its header", parts.numbers.size()),
                     fmt::format("{} of {} numbers", count * type->size_bytes, count));
   }
-  NumpyArray array{{}, type->name == "b1"};
+  NumpyArray array{{}, numbers.kind()};
   array.numbers.reserve(count);
   for (std::size_t at = 0; at < parts.numbers.size(); at += type->size_bytes) {
-    array.numbers.push_back(type->load(parts.numbers.data() + at, descr.front() == '>'));
+    array.numbers.push_back(type->load(parts.numbers.data() + at, numbers.is_big_endian));
   }
   return array;
+}
+
+NumpyKind kind_of_npy(std::string_view start, const fs::path& file) {
+  return numbers_in(split_npy(start, file).header, file).kind();
 }
 
 std::vector<ArchiveMember> unpack_npz(std::string_view bytes, const fs::path& file) {

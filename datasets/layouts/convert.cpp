@@ -114,17 +114,28 @@ SplitNumbers split_numbers(const Dataset& dataset) {
 struct Target {
   fs::path folder;
   fs::path pose_file;  ///< that appears when all of it is on the disk
+  DataMark mark;
   WriteOptions writing;
 };
 
-std::vector<Target> targets_of(const Dataset& dataset, const LayoutWriter& writer,
+/// Returns the mark of what is made of a sequence.
+DataMark new_mark(const Sequence& sequence, DatasetKind layout) {
+  DataMark mark = mark_as_read(sequence);
+  if (mark.simulated) mark.simulated->layout = to_string(layout);
+  return mark;
+}
+
+std::vector<Target> targets_of(const Dataset& dataset, DatasetKind layout,
                                const WriteOptions& asked) {
+  const LayoutWriter& writer = *layout_of(layout).writer;
   std::vector<Target> targets;
   for (std::size_t i = 0; i < dataset.sequences.size(); ++i) {
     const Sequence& sequence = *dataset.sequences[i];
     Target& target = targets.emplace_back();
+    target.mark = new_mark(sequence, layout);
     target.folder = writer.folder(sequence.name(), i);
     target.writing = asked;
+    if (target.mark.is_set()) target.writing.mark = format_mark(target.mark);
     target.writing.scans = sequence.size();
     target.writing.radial_velocities = sequence.recording().has_radial_velocities;
     const std::string last = writer.last_file(target.writing);
@@ -138,7 +149,9 @@ std::set<fs::path> expected_files(const Dataset& dataset, const LayoutWriter& wr
                                   const std::vector<Target>& targets) {
   std::set<fs::path> files = {kSimulatedMarker};
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    files.insert(marker_of(writer, targets[i].folder));
+    for (const auto name : {kSimulatedMarker, kDisturbedMarker}) {
+      files.insert(mark_folder_of(writer, targets[i].folder) / name);
+    }
     files.insert({targets[i].pose_file, pose_origin_file(targets[i].pose_file)});
     for (const fs::path& file : writer.files(*dataset.sequences[i])) {
       files.insert((targets[i].folder / file).lexically_normal());
@@ -160,35 +173,24 @@ std::string statement_of(const Dataset& dataset, const ConvertOptions& options) 
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-/// Returns how the data set was disturbed; empty where it was read as it is.
-std::string disturbance_of(const Dataset& dataset) {
-  const auto& perturb = dataset.sequences.front()->reading().perturb;
-  return perturb ? to_string(*perturb) : "";
-}
-
-/// Marks what is made of simulated sequences, and the whole where all of them are.
-void write_markers(const Dataset& dataset, const LayoutWriter& writer,
-                   const std::vector<Target>& targets, const ConvertOptions& options) {
-  const std::string perturb = disturbance_of(dataset);
-  bool all = true;
-  std::string text;
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    std::optional<SimulatedOrigin> origin = dataset.sequences[i]->simulated();
-    all = all && origin;
-    if (!origin) continue;
-    origin->layout = to_string(options.layout);
-    if (!perturb.empty()) {
-      origin->perturb = origin->perturb ? *origin->perturb + ", then " + perturb : perturb;
-    }
-    text = format_simulated_origin(*origin);
-    write_file_atomic(options.out / marker_of(writer, targets[i].folder), text);
+/// Marks what is made of sequences with a mark, and the whole where all of them are simulated.
+void write_marks(const LayoutWriter& writer, const std::vector<Target>& targets,
+                 const ConvertOptions& options) {
+  bool all_simulated = true;
+  for (const Target& target : targets) {
+    all_simulated = all_simulated && target.mark.simulated;
+    if (!target.mark.is_set()) continue;
+    const fs::path folder = options.out / mark_folder_of(writer, target.folder);
+    write_file_atomic(folder / marker_name(target.mark), format_mark(target.mark));
   }
-  if (all) write_file_atomic(options.out / kSimulatedMarker, text);
+  if (all_simulated) {
+    write_file_atomic(options.out / kSimulatedMarker, format_mark(targets.back().mark));
+  }
 }
 
 void write_shared_files(const Dataset& dataset, const LayoutWriter& writer,
                         const std::vector<Target>& targets, const ConvertOptions& options) {
-  write_markers(dataset, writer, targets, options);
+  write_marks(writer, targets, options);
   if (writer.write_splits != nullptr) writer.write_splits(options.out, split_numbers(dataset));
 }
 
@@ -274,7 +276,7 @@ std::vector<std::string> convert(
   const Layout& layout = layout_of(options.layout);
   if (!layout.writer) throw UsageError("layout " + std::string(layout.name) + " is read only");
   const LayoutWriter& writer = *layout.writer;
-  const std::vector<Target> targets = targets_of(dataset, writer, options.writing);
+  const std::vector<Target> targets = targets_of(dataset, options.layout, options.writing);
   const FolderLock lock(options.out);
   UnfinishedConversion unfinished(options.out, statement_of(dataset, options),
                                   expected_files(dataset, writer, targets));

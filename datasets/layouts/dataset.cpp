@@ -254,22 +254,22 @@ void check_point_times(const Reading& asked, const Layout& layout, const Sequenc
 
 /// Returns what made a sequence. A data set with a marker of its own alone was simulated before
 /// sequences had them, or got recorded ones since: neither may pass for the other.
-std::optional<SimulatedOrigin> origin_of(const Sequence& sequence, const SequenceFolder& folder,
-                                         const Layout& layout, const std::filesystem::path& root) {
-  auto origin = simulated_origin(folder.folder);
+DataMark mark_of(const Sequence& sequence, const SequenceFolder& folder, const Layout& layout,
+                 const std::filesystem::path& root) {
   const Recording& recording = sequence.recording();
-  if (!origin && !recording.scans.empty() && recording.scans.front().file) {
-    origin = origin_of_file(*recording.scans.front().file, layout.scan_folders);
-  } else if (!origin && !recording.files.empty()) {
-    origin = origin_of_file(recording.files.front(), 0);
+  DataMark mark = recording.mark.is_set() ? recording.mark : mark_in(folder.folder);
+  if (!mark.is_set() && !recording.scans.empty() && recording.scans.front().file) {
+    mark = mark_of_file(*recording.scans.front().file, layout.scan_folders);
+  } else if (!mark.is_set() && !recording.files.empty()) {
+    mark = mark_of_file(recording.files.front(), 0);
   }
-  if (!origin && simulated_origin(root)) {
+  if (!mark.simulated && simulated_origin(root)) {
     throw DataError(
         folder.folder,
         fmt::format("has no {0}, but the data set {1} has", kSimulatedMarker, root.string()),
         "one in each simulated sequence: mosbench simulate, called as before, adds it");
   }
-  return origin;
+  return mark;
 }
 
 /// Throws DataError for a sequence whose poses no sensor can have had.
@@ -359,7 +359,7 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
     check_point_times(reading, layout, folder);
     std::unique_ptr<Sequence> sequence = opened(layout, folder, reading);
     check_positions(*sequence, folder);
-    sequence->set_simulated(origin_of(*sequence, folder, layout, path));
+    sequence->set_mark(mark_of(*sequence, folder, layout, path));
     if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
     dataset.sequences.push_back(with_point_times(std::move(sequence), reading));
   }

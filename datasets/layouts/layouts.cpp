@@ -4,7 +4,6 @@
 #include <array>
 
 #include "datasets/layouts/layout.hpp"
-#include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
@@ -38,9 +37,10 @@ const Layout& layout_of(DatasetKind kind) {
   return **std::ranges::find(layouts(), kind, &Layout::kind);
 }
 
-std::filesystem::path marker_of(const LayoutWriter& writer, const std::filesystem::path& place) {
+std::filesystem::path mark_folder_of(const LayoutWriter& writer,
+                                     const std::filesystem::path& place) {
   const bool is_file = *writer.last_file({}) == '\0';
-  return (is_file ? place.parent_path() : place) / kSimulatedMarker;
+  return is_file ? place.parent_path() : place;
 }
 
 std::string lost_stamps_text(std::size_t scans, const Layout& layout) {

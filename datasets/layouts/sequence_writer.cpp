@@ -172,12 +172,16 @@ class DoalsBagWriter : public SequenceWriter {
   DoalsBagWriter(const fs::path& folder, const WriteOptions& options)
       : folder_(folder),
         bag_(folder / "bag.bag", options.compression),
+        mark_(options.mark),
         rows_(options.scans),
         stamps_(folder / "bag.bag") {}
 
   void write(std::size_t scan_index, const Frame& frame) override {
     const std::int64_t stamp_ns = rows_.add(scan_index, frame);
     stamps_.expect_later(stamp_ns, frame);
+    if (const std::string mark = std::exchange(mark_, ""); !mark.empty()) {
+      bag_.write(kMarkTopic, stamp_ns, kString, format_string(mark, MessageEncoding::kRos1));
+    }
     bag_.write("/tf", stamp_ns, kTfMessage,
                format_tf_message({{stamp_ns, "map", kDoalsFrame, frame.map_from_sensor}}));
     // The field of times that DOALS's driver has, too: a scan is taken at one instant.
@@ -194,6 +198,7 @@ class DoalsBagWriter : public SequenceWriter {
  private:
   fs::path folder_;
   BagWriter bag_;
+  std::string mark_;  ///< until it is written
   DoalsRows rows_;
   RisingStamps stamps_;
 };
@@ -208,6 +213,7 @@ class Ros2SequenceWriter : public SequenceWriter {
  public:
   Ros2SequenceWriter(const fs::path& folder, const WriteOptions& options)
       : bag_(Ros2BagWriter::open(storage_of(options), folder, options.compression)),
+        mark_(options.mark),
         stamps_(folder / message_file_of(storage_of(options))) {}
 
   void write(std::size_t scan_index, const Frame& frame) override {
@@ -215,6 +221,9 @@ class Ros2SequenceWriter : public SequenceWriter {
     constexpr MessageEncoding kEncoding = MessageEncoding::kCdr;
     const std::int64_t stamp_ns = stamp_or_period_ns(scan_index, frame.stamp_ns);
     stamps_.expect_later(stamp_ns, frame);
+    if (const std::string mark = std::exchange(mark_, ""); !mark.empty()) {
+      bag_->write(kMarkTopic, stamp_ns, kString, format_string(mark, kEncoding));
+    }
     bag_->write("/tf", stamp_ns, kTfMessage,
                 format_tf_message({{stamp_ns, "map", kFrame, frame.map_from_sensor}}, kEncoding));
     std::optional<ExtraField> labels;
@@ -227,6 +236,7 @@ class Ros2SequenceWriter : public SequenceWriter {
 
  private:
   std::unique_ptr<Ros2BagWriter> bag_;
+  std::string mark_;  ///< until it is written
   RisingStamps stamps_;
 };
 

@@ -27,6 +27,14 @@ constexpr std::size_t kHeadBytes = 4096;
 /// No scan takes longer.
 constexpr std::int64_t kLongestScanNs = 1'000'000'000;
 
+/// The mark that `convert` left in a bag.
+DataMark mark_inside(const BagReader& bag) {
+  const std::vector<BagMessage> messages = bag.messages(kMarkTopic);
+  if (messages.empty()) return {};
+  const BagMessage& first = messages.front();
+  return parse_mark(parse_string(bag.read(first), bag.format_of(first), bag.path()), bag.path());
+}
+
 }  // namespace
 
 std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder) {
@@ -52,6 +60,7 @@ BagSequence::BagSequence(std::string name, std::unique_ptr<const BagReader> bag,
   recording.name = SequenceName(std::move(name), bag_->path().parent_path());
   recording.files = bag_->files();
   recording.remarks = bag_->remarks();
+  recording.mark = mark_inside(*bag_);
   const std::string topic = cloud_topic(*bag_, asked.topic);
   list_scans(topic);
   expect_one_frame(topic);

@@ -24,11 +24,13 @@ struct MessageType {
 };
 
 const MessageType& type_of(std::string_view name) {
-  static const std::array<MessageType, 2> kTypes = {
+  static const std::array<MessageType, 3> kTypes = {
       {{kPointCloud2, "1158d486dd51d683ce2f1be655c3c181",
         message_definition(kPointCloud2, MessageEncoding::kRos1)},
        {kTfMessage, "94810edda583a504dfda3829e70d7eec",
-        message_definition(kTfMessage, MessageEncoding::kRos1)}}};
+        message_definition(kTfMessage, MessageEncoding::kRos1)},
+       {kString, "992ce8a1687cec8c8bd883ec73ca41d1",
+        message_definition(kString, MessageEncoding::kRos1)}}};
   return *std::ranges::find(kTypes, name, &MessageType::name);
 }
 

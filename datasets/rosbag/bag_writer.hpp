@@ -26,7 +26,8 @@ class BagWriter {
   BagWriter(const BagWriter&) = delete;
   BagWriter& operator=(const BagWriter&) = delete;
 
-  /// Appends a message as ROS 1 serializes it; `type` is kPointCloud2 or kTfMessage.
+  /// Appends a message as ROS 1 serializes it; `type` is kPointCloud2, kTfMessage or
+  /// kString.
   void write(const std::string& topic, std::int64_t stamp_ns, std::string_view type,
              std::string_view message);
   void close();

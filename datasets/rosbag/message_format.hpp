@@ -32,6 +32,10 @@ inline constexpr std::string_view kPoseStamped = "geometry_msgs/PoseStamped";
 inline constexpr std::string_view kPoseWithCovarianceStamped =
     "geometry_msgs/PoseWithCovarianceStamped";
 inline constexpr std::string_view kPath = "nav_msgs/Path";
+inline constexpr std::string_view kString = "std_msgs/String";
+
+/// The topic on which a bag keeps the mark of its data (see DataMark), in one kString.
+inline constexpr const char* kMarkTopic = "/mosbench/mark";
 
 /// What a message is and how it is encoded.
 struct MessageFormat {

@@ -57,8 +57,8 @@ class Ros2BagWriter {
   Ros2BagWriter(const Ros2BagWriter&) = delete;
   Ros2BagWriter& operator=(const Ros2BagWriter&) = delete;
 
-  /// Appends a message in CDR; `type` is kPointCloud2 or kTfMessage. Throws DataError also for a
-  /// stamp below 0.
+  /// Appends a message in CDR; `type` is kPointCloud2, kTfMessage or kString. Throws DataError
+  /// also for a stamp below 0.
   void write(const std::string& topic, std::int64_t stamp_ns, std::string_view type,
              std::string_view message);
   void close();

@@ -247,7 +247,20 @@ TimedCloud parse_cloud(std::string_view message, const std::filesystem::path& fi
   return cloud;
 }
 
+std::string parse_string(std::string_view bytes, const MessageFormat& format,
+                         const std::filesystem::path& file) {
+  MessageCursor cursor(bytes, format.encoding, file, "a String");
+  return std::string(cursor.take_text());
+}
+
+std::string format_string(std::string_view text, MessageEncoding encoding) {
+  MessageSink sink(encoding);
+  sink.put_text(text);
+  return std::move(sink).bytes();
+}
+
 std::string message_definition(std::string_view type, MessageEncoding encoding) {
+  if (type == kString) return "string data\n";
   const bool is_ros1 = encoding == MessageEncoding::kRos1;
   // ROS 1 leaves out the package of Header, and of types in the same one.
   const std::string header = is_ros1 ? "Header" : "std_msgs/Header";

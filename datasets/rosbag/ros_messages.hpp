@@ -30,6 +30,11 @@ std::vector<StampedTransform> parse_transforms(std::string_view bytes, const Mes
 std::string format_tf_message(const std::vector<StampedTransform>& transforms,
                               MessageEncoding encoding = MessageEncoding::kRos1);
 
+/// The text of a kString. Throws as `parse_transforms`.
+std::string parse_string(std::string_view bytes, const MessageFormat& format,
+                         const std::filesystem::path& file);
+std::string format_string(std::string_view text, MessageEncoding encoding);
+
 /// Parses a PointCloud2 or a CustomMsg of Livox up to its points; no more of it has to be given.
 /// The points of Livox become records with the fields x, y, z, intensity, offset_time. Throws
 /// DataError also when the sizes contradict each other.
@@ -57,8 +62,8 @@ TimedCloud parse_cloud(std::string_view message, const std::filesystem::path& fi
 /// Returns whether `head` names a field that `parse_cloud` reads times from.
 bool has_times(const CloudHead& head);
 
-/// Returns the definition of kPointCloud2 or kTfMessage with the types that it is made of, as bags
-/// keep it for other programs.
+/// Returns the definition of kPointCloud2, kTfMessage or kString with the types that it is made of,
+/// as bags keep it for other programs.
 std::string message_definition(std::string_view type, MessageEncoding encoding);
 
 }  // namespace mosbench

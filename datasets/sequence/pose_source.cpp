@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 #include <utility>
 
 #include "datasets/disk/files.hpp"
@@ -284,6 +285,14 @@ bool are_too_few(std::size_t posed, std::size_t scans) {
 
 void mark_as_lidars(const std::filesystem::path& file, std::string_view text) {
   write_file_atomic(mark_of(file), lidars(text));
+}
+
+bool has_foreign_mark(const std::filesystem::path& file) {
+  static const std::regex kMark("lidar [0-9a-f]{16}\n");
+  const std::filesystem::path mark = mark_of(file);
+  if (!is_there(mark)) return false;
+  const std::string text = read_file(mark);
+  return !text.empty() && !std::regex_match(text, kMark);
 }
 
 bool is_marked_as_lidars(const std::filesystem::path& file) {

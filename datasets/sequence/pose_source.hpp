@@ -23,6 +23,9 @@ bool are_too_few(std::size_t posed, std::size_t scans);
 /// DataError.
 void mark_as_lidars(const std::filesystem::path& file, std::string_view text);
 
+/// Whether FILE.frame holds anything else, which mark_as_lidars would replace.
+bool has_foreign_mark(const std::filesystem::path& file);
+
 /// Whether FILE.frame says so of what FILE holds now. Throws DataError where a file cannot be read.
 bool is_marked_as_lidars(const std::filesystem::path& file);
 

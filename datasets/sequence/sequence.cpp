@@ -95,6 +95,11 @@ void Sequence::check_count(std::size_t scan_index, std::size_t points) const {
                   fmt::format("{} points", entry.points));
 }
 
+DataMark mark_as_read(const Sequence& sequence) {
+  const std::optional<Perturbation>& perturb = sequence.reading().perturb;
+  return disturbed_by(sequence.mark(), perturb ? to_string(*perturb) : "");
+}
+
 std::vector<Pose> poses_of(const Sequence& sequence) {
   std::vector<Pose> poses;
   for (const ScanEntry& scan : sequence.recording().scans) poses.push_back(scan.map_from_sensor);

@@ -67,7 +67,7 @@ struct Recording {
   /// Plain sentences on what was assumed (pose frame), and on what makes numbers doubtful (scans
   /// left out): every output shows these.
   std::vector<std::string> remarks, doubts;
-  std::optional<SimulatedOrigin> simulated;  ///< nothing for recorded data
+  DataMark mark;  ///< of stored data that no sensor measured so
   /// What was read in which convention; two runs on the same files may differ in it.
   ReadingDone reading;
   bool has_radial_velocities = false;  ///< whether frames have them
@@ -151,10 +151,10 @@ class Sequence {
   std::vector<std::filesystem::path> files() const { return files_of(recording_); }
   const std::vector<std::string>& remarks() const { return recording_.remarks; }
   const ReadingDone& reading() const { return recording_.reading; }
-  const std::optional<SimulatedOrigin>& simulated() const { return recording_.simulated; }
-  void set_simulated(std::optional<SimulatedOrigin> origin) {
-    recording_.simulated = std::move(origin);
-  }
+  const DataMark& mark() const { return recording_.mark; }
+  void set_mark(DataMark mark) { recording_.mark = std::move(mark); }
+  /// Returns what made a simulated sequence; nothing for recorded data.
+  const std::optional<SimulatedOrigin>& simulated() const { return recording_.mark.simulated; }
 
  protected:
   Sequence() = default;
@@ -196,6 +196,9 @@ class SequenceAround : public Sequence {
  private:
   std::unique_ptr<Sequence> inner_;
 };
+
+/// Returns the mark of the frames of a sequence, which may be disturbed while they are read.
+DataMark mark_as_read(const Sequence& sequence);
 
 /// Returns the map_from_sensor of each scan.
 std::vector<Pose> poses_of(const Sequence& sequence);

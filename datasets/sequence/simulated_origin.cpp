@@ -6,11 +6,20 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr std::string_view kDisturbed = "disturbed: ";
+
+std::string parse_disturbed(std::string_view text, const std::filesystem::path& file) {
+  const std::string_view line = take_line(text);
+  if (line.starts_with(kDisturbed)) return std::string(line.substr(kDisturbed.size()));
+  throw DataError(file, "says nothing of disturbances", "a mark written by mosbench");
+}
 
 }  // namespace
 
@@ -45,15 +54,54 @@ std::optional<SimulatedOrigin> simulated_origin(const std::filesystem::path& fol
   return parse_simulated_origin(read_file(marker), marker);
 }
 
-std::optional<SimulatedOrigin> origin_of_file(const std::filesystem::path& file,
-                                              int folders_above) {
+DataMark mark_in(const std::filesystem::path& folder) {
+  DataMark mark{simulated_origin(folder), ""};
+  if (mark.simulated) mark.disturbed = mark.simulated->perturb.value_or("");
+  const std::filesystem::path marker = folder / kDisturbedMarker;
+  std::error_code ignored;
+  const bool is_there = std::filesystem::is_regular_file(marker, ignored);
+  if (mark.disturbed.empty() && is_there)
+    mark.disturbed = parse_disturbed(read_file(marker), marker);
+  return mark;
+}
+
+DataMark mark_of_file(const std::filesystem::path& file, int folders_above) {
   std::error_code error;
   std::filesystem::path folder = std::filesystem::weakly_canonical(file, error).parent_path();
   for (int above = 0; above <= folders_above && !error; ++above) {
-    if (auto origin = simulated_origin(folder)) return origin;
+    if (DataMark mark = mark_in(folder); mark.is_set()) return mark;
     folder = folder.parent_path();
   }
-  return std::nullopt;
+  return {};
+}
+
+DataMark disturbed_by(DataMark mark, const std::string& perturb) {
+  if (perturb.empty()) return mark;
+  mark.disturbed += (mark.disturbed.empty() ? "" : ", then ") + perturb;
+  if (mark.simulated) mark.simulated->perturb = mark.disturbed;
+  return mark;
+}
+
+std::string disturbed_doubt(const DataMark& mark) {
+  return mark.disturbed.empty() ? "" : std::string(kDisturbedDoubt) + mark.disturbed;
+}
+
+std::string_view marker_name(const DataMark& mark) {
+  return mark.simulated ? kSimulatedMarker : kDisturbedMarker;
+}
+
+std::string format_mark(const DataMark& mark) {
+  if (mark.simulated) return format_simulated_origin(*mark.simulated);
+  return std::string(kDisturbed) + mark.disturbed +
+         "\nmosbench changed these scans, poses or stamps on purpose: no sensor measured them "
+         "so.\n";
+}
+
+DataMark parse_mark(std::string_view text, const std::filesystem::path& file) {
+  if (!text.starts_with('{')) return {std::nullopt, parse_disturbed(text, file)};
+  DataMark mark{parse_simulated_origin(text, file), ""};
+  mark.disturbed = mark.simulated->perturb.value_or("");
+  return mark;
 }
 
 }  // namespace mosbench

@@ -296,8 +296,8 @@ std::vector<std::string> simulate(
   }
   claim_folder(options.out, origin);
   for (const SimulatedRecording& recording : recordings) {
-    write_file_atomic(options.out / marker_of(*layout.writer, recording.folder),
-                      format_simulated_origin(origin));
+    const fs::path folder = options.out / mark_folder_of(*layout.writer, recording.folder);
+    write_file_atomic(folder / kSimulatedMarker, format_simulated_origin(origin));
   }
   write_file_atomic(options.out / "README.txt", readme(origin, layout));
   write_file_atomic(options.out / "scene.json", format_scene(scene));

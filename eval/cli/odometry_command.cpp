@@ -83,6 +83,7 @@ CommandRun add_odometry(CLI::App& command) {
       "stdout; a folder for several sequences")
       ->required();
   add_odometry_flag(command, flags->odometry, "What finds the poses (default: simple)");
+  command.add_flag("--overwrite", flags->files.overwrite, "Replace files of poses that are there");
   add_threads_flag(command, flags->files.threads);
   return [flags] { return odometry_answer(*flags); };
 }

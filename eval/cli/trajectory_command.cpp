@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -165,6 +166,23 @@ void check_truth(const TrajectoryFlags& flags, const CLI::App& command) {
                   first, shell_word(flags.other->string()), given));
 }
 
+/// Of the truth and of all estimates, each once.
+std::vector<NamedMark> marks_of(const ScoredEstimates& first,
+                                const std::optional<ScoredEstimates>& second) {
+  std::vector<NamedMark> marks;
+  for (const ScoredEstimates* scored : {&first, second ? &*second : nullptr}) {
+    if (scored == nullptr) continue;
+    for (const TrajectoryPair& pair : scored->pairs) {
+      for (const NamedMark& mark : pair.marks) {
+        if (std::ranges::find(marks, mark.place, &NamedMark::place) == marks.end()) {
+          marks.push_back(mark);
+        }
+      }
+    }
+  }
+  return marks;
+}
+
 Answer trajectory_answer(const TrajectoryFlags& flags, const CLI::App& command) {
   check_truth(flags, command);
   if (flags.other && flags.relative.delta_m) {
@@ -179,6 +197,7 @@ Answer trajectory_answer(const TrajectoryFlags& flags, const CLI::App& command) 
   if (flags.other) second = scored_estimates(*flags.other, flags, rules);
   Answer answer =
       second ? answer_of_two(first, *second, flags, rules) : answer_of_one(first, flags, rules);
+  answer.standing = standing_of(marks_of(first, second));
   draw(first.scores, second ? &second->scores : nullptr, flags, rules.alignment, answer);
   return answer_beside(flags.plot.value_or(""), std::move(answer));
 }

@@ -17,6 +17,7 @@
 #include "eval/result/reading_json.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/result/tell.hpp"
+#include "eval/store/store.hpp"
 
 namespace mosbench {
 namespace {
@@ -31,25 +32,6 @@ nlohmann::ordered_json record_identity(const Sequence& sequence,
           {"reading", to_json(members_of(reading))},
           {"file_stamp", file_stamp(sequence)},
           {"code", code_json()}};
-}
-
-/// The scans of a record that an earlier call left when it had written the pose file, if the same
-/// question was asked and the file still holds these poses.
-std::optional<nlohmann::ordered_json> recorded_scans(const std::filesystem::path& record,
-                                                     const nlohmann::ordered_json& identity,
-                                                     const FoundPoses& none, bool as_tum) {
-  if (!is_there(record) || !is_there(none.file)) return std::nullopt;
-  try {
-    nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_file(record));
-    if (json.at("identity") != identity) return std::nullopt;
-    FoundPoses found{none.sequence, none.file, std::move(json.at("scans"))};
-    const bool whole = found.scans.size() == found.sequence.size();
-    (void)found_text(found, "");  // throws where something is missing
-    if (!whole || pose_rows(found, as_tum) != read_file(found.file)) return std::nullopt;
-    return std::move(found.scans);
-  } catch (const nlohmann::json::exception&) {
-    return std::nullopt;  // not what this program wrote
-  }
 }
 
 /// Whether a file of this name lies beside others: stdout and pipes do not.
@@ -77,29 +59,76 @@ void refuse_part(const Sequence& sequence) {
       option("scans"), sequence.name()));
 }
 
-FoundPoses find_poses_of(const Sequence& sequence, const std::filesystem::path& file,
-                         const std::optional<OdometryChoice>& choice, const PoseFiles& files) {
-  FoundPoses found{sequence, file,
-                   choice ? scans_json(sequence, estimate_poses(sequence, *choice, files.threads))
-                          : scans_json(sequence)};
-  write_pose_file(file, pose_rows(found, files.as_tum), files.as_tum);
-  return found;
+/// What is to be written of one sequence.
+struct PoseTask {
+  const Sequence& sequence;
+  std::filesystem::path file;
+  std::filesystem::path record = {};  ///< beside each of several; none for a single one
+  nlohmann::ordered_json identity = {};
+  std::optional<nlohmann::ordered_json> recorded = std::nullopt;  ///< an earlier call's scans
+  bool is_written = false;  ///< the poses of these scans lie there
+};
+
+PoseTask task_of(const Sequence& sequence, const std::optional<OdometryChoice>& choice,
+                 const PoseFiles& files, bool single) {
+  if (single) return {.sequence = sequence, .file = files.out};
+  const std::string stem = (files.out / sequence.name()).string();
+  return {.sequence = sequence,
+          .file = stem + (files.as_tum ? ".tum" : ".txt"),
+          .record = stem + ".json",
+          .identity = record_identity(sequence, choice)};
 }
 
-/// One of several sequences: with a record beside its poses, so that a call after a kill goes on
-/// with the first sequence that is not finished.
-FoundPoses find_or_keep(const Sequence& sequence, const std::optional<OdometryChoice>& choice,
-                        const PoseFiles& files) {
-  const std::filesystem::path stem = files.out / sequence.name();
-  const std::filesystem::path file = stem.string() + (files.as_tum ? ".tum" : ".txt");
-  const std::filesystem::path record = stem.string() + ".json";
-  const nlohmann::ordered_json identity = record_identity(sequence, choice);
-  if (auto scans = recorded_scans(record, identity, {sequence, file, {}}, files.as_tum)) {
-    tell(fmt::format("{}: finished by an earlier call, kept", sequence.name()));
-    return {sequence, file, std::move(*scans)};
+[[noreturn]] void refuse_record(const PoseTask& task, const std::string& why) {
+  throw UsageError(
+      fmt::format("{}: {}, expected another folder, or --overwrite", task.record.string(), why));
+}
+
+/// The scans of a record that an earlier call of the same question left before it wrote the poses.
+/// Throws UsageError for any other file of that name.
+std::optional<nlohmann::ordered_json> recorded_scans(const PoseTask& task, bool as_tum) {
+  if (task.record.empty() || !is_there(task.record)) return std::nullopt;
+  try {
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_file(task.record));
+    const std::string other = changed_members(json.at("identity"), task.identity);
+    if (!other.empty()) refuse_record(task, fmt::format("belongs to other poses ({})", other));
+    FoundPoses found{task.sequence, task.file, std::move(json.at("scans"))};
+    const bool whole = found.scans.size() == found.sequence.size();
+    (void)found_text(found, "");  // throws where something is missing
+    (void)pose_rows(found, as_tum);
+    if (whole) return std::move(found.scans);
+  } catch (const nlohmann::json::exception&) {  // refused below
   }
-  FoundPoses found = find_poses_of(sequence, file, choice, files);
-  commit_file(record, json_text({{"identity", identity}, {"scans", found.scans}}));
+  refuse_record(task, "was not written by mosbench odometry");
+}
+
+/// Keeps what an earlier call found. Throws UsageError for files that would be replaced.
+void check_task(PoseTask& task, bool as_tum) {
+  task.recorded = recorded_scans(task, as_tum);
+  task.is_written =
+      task.recorded && is_there(task.file) &&
+      read_file(task.file) == pose_rows({task.sequence, task.file, *task.recorded}, as_tum);
+  if (task.is_written || !lies_in_a_folder(task.file)) return;
+  refuse_to_replace(task.file);
+  if (!as_tum && has_foreign_mark(task.file)) refuse_to_replace(task.file.string() + ".frame");
+}
+
+/// The record is written before the poses: they never lie there without it.
+FoundPoses find_or_keep(PoseTask task, const std::optional<OdometryChoice>& choice,
+                        const PoseFiles& files) {
+  FoundPoses found{task.sequence, task.file, {}};
+  if (task.recorded) {
+    tell(fmt::format("{}: finished by an earlier call, kept", task.sequence.name()));
+    found.scans = std::move(*task.recorded);
+  } else {
+    found.scans =
+        choice ? scans_json(task.sequence, estimate_poses(task.sequence, *choice, files.threads))
+               : scans_json(task.sequence);
+    if (!task.record.empty()) {
+      commit_file(task.record, json_text({{"identity", task.identity}, {"scans", found.scans}}));
+    }
+  }
+  if (!task.is_written) write_pose_file(task.file, pose_rows(found, files.as_tum), files.as_tum);
   return found;
 }
 
@@ -118,11 +147,13 @@ std::vector<FoundPoses> write_poses(const Dataset& dataset,
   if (single) check_output(files.out);
   const std::optional<FolderLock> lock =
       single ? std::nullopt : std::make_optional<FolderLock>(files.out);
-  std::vector<FoundPoses> found;
+  std::vector<PoseTask> tasks;
   for (const auto& sequence : dataset.sequences) {
-    found.push_back(single ? find_poses_of(*sequence, files.out, choice, files)
-                           : find_or_keep(*sequence, choice, files));
+    tasks.push_back(task_of(*sequence, choice, files, single));
+    if (!files.overwrite) check_task(tasks.back(), files.as_tum);
   }
+  std::vector<FoundPoses> found;
+  for (PoseTask& task : tasks) found.push_back(find_or_keep(std::move(task), choice, files));
   return found;
 }
 

@@ -13,12 +13,13 @@ namespace mosbench {
 struct PoseFiles {
   std::filesystem::path out = {};  ///< a file, "-" is stdout; a folder for several sequences
   bool as_tum = false;             ///< else as KITTI's rows
+  bool overwrite = false;          ///< else what holds something stays, and the call is refused
   unsigned threads = 1;
 };
 
 /// Finds and writes the poses of every sequence of a data set that was opened without poses; writes
 /// those that it has without a choice. Of several, those that an earlier call finished are kept.
-/// Throws UsageError and DataError.
+/// What is in the way is found before any work. Throws UsageError and DataError.
 std::vector<FoundPoses> write_poses(const Dataset& dataset,
                                     const std::optional<OdometryChoice>& choice,
                                     const PoseFiles& files);

@@ -80,7 +80,8 @@ PlannedSequence plan_sequence(RunPlan& plan, std::size_t position, const RunPlac
   if (!planned.finished) return planned;
   // An earlier mosbench did not keep which files the command of a program named.
   const std::string& program = planned.finished->from.program;
-  if (!program.empty() && program != planned.asked.from.program) {
+  const bool is_other = !program.empty() && program != planned.asked.from.program;
+  if (is_other || changed_program_file(*planned.finished)) {
     plan.notes.push_back(fmt::format("{}: the program has changed, it is run again",
                                      title_of(sequence, plan.settings)));
     planned.finished = std::nullopt;

@@ -246,10 +246,24 @@ ordered_json identity_of(const Job& job, DatasetKind kind, const ordered_json& i
 
 std::string key_of(const ordered_json& identity) { return hash_of_text(identity.dump()); }
 
+namespace {
+
+/// Whether a word of a comment is the name of a file, not one of a sentence: "weights.pt", "net/w".
+bool names_file(std::string_view word) {
+  if (word.find("://") != word.npos || word.ends_with('.')) return false;
+  const std::size_t dot = word.rfind('.');
+  const bool has_extension = dot != word.npos && dot > 0 && dot + 1 < word.size() &&
+                             std::isalpha(static_cast<unsigned char>(word[dot + 1])) != 0;
+  return has_extension || word.find('/') != word.npos;
+}
+
+}  // namespace
+
 std::vector<ProgramFile> files_of_program(const MethodKind& method) {
   std::vector<ProgramFile> files;
   if (method.name != kExecKind) return files;
   std::istringstream command{std::string(method.title.substr(std::string_view("exec:").size()))};
+  bool in_comment = false;
   for (std::string word; !(command >> std::ws).eof();) {
     const bool is_first = command.tellg() == 0;
     const char quote = static_cast<char>(command.peek());
@@ -258,8 +272,14 @@ std::vector<ProgramFile> files_of_program(const MethodKind& method) {
     } else {
       command >> word;
     }
+    in_comment = in_comment || word.starts_with('#');
     fs::path file = is_first ? found_by_path(word) : fs::path(word);
     std::error_code ignored;
+    if (in_comment && names_file(word) && !fs::exists(file, ignored)) {
+      throw UsageError(fmt::format(
+          "--method {}: names {} behind its #, which does not exist, expected files that do",
+          method.title, word));
+    }
     if (!fs::is_regular_file(file, ignored)) continue;
     files.push_back(
         {fs::absolute(file).lexically_normal(), fs::file_size(file), hash_of_file(file)});

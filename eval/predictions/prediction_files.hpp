@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "datasets/formats/npy_file.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/predictions/predictions.hpp"
@@ -89,7 +90,14 @@ std::vector<DynabloxCounts> parse_dynablox_counts(std::string_view text, Dynablo
 std::vector<std::uint64_t> parse_dynablox_stamps_ns(std::string_view text,
                                                     const std::filesystem::path& file);
 
-/// Reads confidences 0..1 per point from a NumPy .npy file (of any type and
+/// Says what a NumPy .npy file holds: integers are label ids or classes, others confidences.
+NumpyKind read_npy_kind(const std::filesystem::path& file);
+/// Reads ids of a .npy file of integers, for a scan one per point. Throw DataError.
+std::vector<std::uint32_t> read_npy_ids(const std::filesystem::path& file);
+std::vector<std::uint32_t> read_npy_labels(const std::filesystem::path& file,
+                                           std::size_t point_count);
+
+/// Reads confidences 0..1 per point from a NumPy .npy file (of reals or booleans, and of any
 /// shape with as many numbers as the scan has points). Throws DataError.
 std::vector<double> read_npy_confidences(const std::filesystem::path& file,
                                          std::size_t point_count);

@@ -160,6 +160,21 @@ std::vector<std::uint64_t> parse_dynablox_stamps_ns(std::string_view text, const
   return stamps_ns;
 }
 
+NumpyKind read_npy_kind(const fs::path& file) {
+  constexpr std::size_t kLongestHeader = 65536;
+  return kind_of_npy(read_start(file, kLongestHeader), file);
+}
+
+std::vector<std::uint32_t> read_npy_ids(const fs::path& file) {
+  return label_ids(parse_npy(read_file(file), file).numbers, file);
+}
+
+std::vector<std::uint32_t> read_npy_labels(const fs::path& file, std::size_t point_count) {
+  std::vector<std::uint32_t> labels = read_npy_ids(file);
+  check_label_count(labels.size(), point_count, file);
+  return labels;
+}
+
 std::vector<double> read_npy_confidences(const fs::path& file, std::size_t point_count) {
   NumpyArray array = parse_npy(read_file(file), file);
   if (array.numbers.size() != point_count) {

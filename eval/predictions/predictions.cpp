@@ -226,12 +226,20 @@ DynabloxLevel dynablox_level_named(std::string_view name) {
       fmt::format("--format dynablox: '{}' is not known, expected point, cluster or object", name));
 }
 
+namespace {
+
+std::vector<std::uint32_t> read_raw_ids(const fs::path& file) {
+  const std::string bytes = read_file(file);
+  return parse_labels(bytes, bytes.size() / sizeof(std::uint32_t), file);
+}
+
+}  // namespace
+
 std::vector<PredictedId> ids_in(std::span<const fs::path> files) {
   std::vector<std::uint64_t> points(65536, 0);
   std::vector<const fs::path*> first_file(points.size(), nullptr);
   for (const fs::path& file : files) {
-    const std::string bytes = read_file(file);
-    const auto labels = parse_labels(bytes, bytes.size() / sizeof(std::uint32_t), file);
+    const auto labels = file.extension() == ".npy" ? read_npy_ids(file) : read_raw_ids(file);
     if (const std::string encoding = other_encoding(labels); !encoding.empty()) {
       throw DataError(file, "holds " + encoding, "a little-endian uint32 label id per point");
     }

@@ -62,9 +62,9 @@ struct PredictedId {
   std::filesystem::path first_file;  ///< that holds it
 };
 
-/// Reads every .label file and returns the ids in them in ascending order. Throws DataError naming
-/// the first file that holds something else than little-endian uint32: big-endian numbers or
-/// float32.
+/// Reads every .label file, or .npy file of integers, and returns the ids in them in ascending
+/// order. Throws DataError naming the first file that holds something else than little-endian
+/// uint32: big-endian numbers or float32.
 std::vector<PredictedId> ids_in(std::span<const std::filesystem::path> files);
 
 /// Returns a remark if no point is predicted moving, or more than half of the points: methods find

@@ -138,29 +138,36 @@ class ScanFiles : public Predictions {
   bool has(std::size_t scan_index) const override { return files_.contains(scan_index); }
 
   std::vector<std::uint32_t> read(std::size_t scan_index) const override {
-    if (format_ == Format::kNpy) return labels(scan_index, confidences(scan_index));
+    if (has_confidences()) return labels(scan_index, confidences(scan_index));
     const fs::path& file = files_.at(scan_index);
     return mapped(read_stored(file, scan_index), file);
   }
 
   std::vector<std::uint32_t> labels(std::size_t scan_index,
                                     std::span<const double> confidences) const override {
-    if (format_ != Format::kNpy) return read(scan_index);
+    if (!has_confidences()) return read(scan_index);
     return mapped(labels_of_confidences(confidences), files_.at(scan_index));
   }
 
   std::vector<double> confidences(std::size_t scan_index) const override {
-    if (format_ != Format::kNpy) return {};
+    if (!has_confidences()) return {};
     return read_npy_confidences(files_.at(scan_index), sequence_.point_count(scan_index));
   }
 
   std::span<const PredictedId> ids() const override { return ids_; }
   const Files& files() const { return files_; }
   void set_ids(std::vector<PredictedId> ids) { ids_ = std::move(ids); }
+  void set_npy_kind(NumpyKind kind) { npy_kind_ = kind; }
+  bool has_ids() const {
+    return describe(format_).extension == ".label" || (is_npy() && !has_confidences());
+  }
   void set_mask(const RangeGate& mask) { mask_ = mask; }
   void set_id_map(const LabelIdMap& map) { id_map_ = map; }
 
  private:
+  bool is_npy() const { return format_ == Format::kNpy; }
+  bool has_confidences() const { return is_npy() && npy_kind_ != NumpyKind::kIntegers; }
+
   std::vector<std::uint32_t> read_stored(const fs::path& file, std::size_t scan_index) const {
     const std::size_t points = sequence_.point_count(scan_index);
     switch (format_) {
@@ -170,6 +177,8 @@ class ScanFiles : public Predictions {
         return parse_point_csv(read_file(file), points, file);
       case Format::kPcd:
         return read_pcd_labels(file, points);
+      case Format::kNpy:
+        return read_npy_labels(file, points);
       case Format::kMaskedLabel:
         return spread_over_scan(read_any_labels(file), sequence_.read(scan_index).points, mask_,
                                 file);
@@ -194,6 +203,7 @@ class ScanFiles : public Predictions {
   const Sequence& sequence_;
   Format format_;
   Files files_;
+  NumpyKind npy_kind_ = NumpyKind::kReals;
   RangeGate mask_;
   LabelIdMap id_map_;
   std::vector<PredictedId> ids_;
@@ -302,9 +312,30 @@ std::vector<PredictedId> ids_of_wanted(const Files& files, const std::vector<std
   return ids_in(wanted_files);
 }
 
+/// Returns what the arrays of all wanted scans hold. Throws DataError naming the first one that
+/// holds something else than those before.
+NumpyKind shared_kind(const Files& files, const std::vector<std::size_t>& wanted) {
+  constexpr std::array kWords = {"booleans", "integers", "reals"};
+  const auto words = [&](NumpyKind kind) { return kWords.at(static_cast<std::size_t>(kind)); };
+  std::optional<NumpyKind> shared;
+  for (const std::size_t k : wanted) {
+    const auto file = files.find(k);
+    if (file == files.end()) continue;
+    const NumpyKind kind = read_npy_kind(file->second);
+    if (!shared) shared = kind;
+    if (kind == *shared) continue;
+    throw DataError(file->second,
+                    fmt::format("holds {}, and those before {}", words(kind), words(*shared)),
+                    "label ids in all files (integers), or confidences (reals)");
+  }
+  return shared.value_or(NumpyKind::kReals);
+}
+
 /// Returns the id map when the files hold class numbers instead of label ids.
-std::optional<LabelIdMap> guess_id_map(const std::vector<PredictedId>& ids,
+std::optional<LabelIdMap> guess_id_map(const std::vector<PredictedId>& ids, Format format,
                                        const fs::path& folder) {
+  static const LabelIdMap kFlags = {{0, kStaticLabel}, {1, kMovingLabel}};
+  if (format == Format::kNpy && !ids.empty() && ids.back().id <= 1) return kFlags;
   if (ids.empty() || ids.back().id > 2 || ids.back().id == 0) return std::nullopt;
   if (ids.back().id == 2) return kLearningIds;
   throw DataError(folder, "holds no other ids than 0 and 1",
@@ -339,16 +370,19 @@ std::unique_ptr<Predictions> open_scan_files(const PredictionPlace& place, const
     labels->set_mask(mask);
     remarks.push_back("labels are for points " + gate_text(mask) + " only; all others are static");
   }
-  const bool has_ids = describe(place.format).extension == ".label";
+  if (place.format == Format::kNpy) labels->set_npy_kind(shared_kind(labels->files(), wanted));
+  const bool has_ids = labels->has_ids();
   std::vector<PredictedId> ids;
   if (has_ids) ids = ids_of_wanted(labels->files(), wanted);
   if (options.id_map) {
     check_mapped(ids, *options.id_map);
     labels->set_id_map(*options.id_map);
   } else if (has_ids) {
-    if (const auto guessed = guess_id_map(ids, place.path)) {
+    if (const auto guessed = guess_id_map(ids, place.format, place.path)) {
       labels->set_id_map(*guessed);
-      remarks.push_back("ids 0, 1 and 2 taken for a network's classes: " + id_map_text(*guessed));
+      remarks.push_back(fmt::format("{} taken for a network's classes: {}",
+                                    guessed->size() == 2 ? "ids 0 and 1" : "ids 0, 1 and 2",
+                                    id_map_text(*guessed)));
     }
   }
   labels->set_ids(std::move(ids));

@@ -71,6 +71,9 @@ void write_pose_file(const std::filesystem::path& file, const std::vector<py::ar
   std::vector<Pose> poses;
   for (const py::array& matrix : matrices) poses.push_back(pose_of(matrix));
   const std::string rows = stamps_ns ? tum_rows(*stamps_ns, poses) : format_poses(poses);
+  if (!stamps_ns && has_foreign_mark(file)) {
+    throw DataError(file.string() + ".frame", "is no mark of poses", "another name of the poses");
+  }
   if (!stamps_ns) mark_as_lidars(file, rows);
   write_file_atomic(file, rows);
 }

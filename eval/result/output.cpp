@@ -44,6 +44,13 @@ void check_output(const std::filesystem::path& file, std::optional<Format> writt
   throw DataError(above, "is no folder", "a folder for " + file.filename().string());
 }
 
+void refuse_to_replace(const std::filesystem::path& file) {
+  std::error_code ignored;
+  if (names_stdout(file) || !std::filesystem::is_regular_file(file, ignored)) return;
+  if (std::filesystem::file_size(file, ignored) == 0) return;
+  throw UsageError(file.string() + ": is there already, expected another name, or --overwrite");
+}
+
 Answer answer_beside(const std::filesystem::path& file, Answer answer) {
   answer.goes_beside_stdout = names_stdout(file);
   return answer;

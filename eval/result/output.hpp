@@ -20,6 +20,10 @@ void append_output(const std::filesystem::path& file, std::string_view bytes);
 /// than what is written.
 void check_output(const std::filesystem::path& file, std::optional<Format> written = std::nullopt);
 
+/// Throws UsageError where `file` is a file that holds something: a writer asks this before its
+/// work, unless --overwrite is given.
+void refuse_to_replace(const std::filesystem::path& file);
+
 /// Returns whether a file that the user named is stdout.
 bool names_stdout(const std::filesystem::path& file);
 

@@ -284,4 +284,19 @@ std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& datas
 /// What every format has to show beside numbers of a data set.
 Standing standing_of(const Dataset& dataset);
 
+/// Says how the label files of a run are not those that its result counts, by their number and
+/// sizes. Nothing for a result without label files.
+std::optional<std::string> changed_labels(const Result& result);
+
+/// Returns the mark of the data that a result is of.
+DataMark mark_of(const Result& result);
+
+/// Where marked data lie, and their mark.
+struct NamedMark {
+  std::string place;
+  DataMark mark;
+};
+/// The same of numbers that are of all these data.
+Standing standing_of(std::span<const NamedMark> marks);
+
 }  // namespace mosbench

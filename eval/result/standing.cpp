@@ -22,6 +22,13 @@ std::string words_of(const SimulatedOrigin& origin) {
                      origin.perturb ? ", disturbed by " + *origin.perturb : "");
 }
 
+/// Says each origin once, in their order.
+void add_origin(const std::string& origin, Standing& standing) {
+  const bool is_said = standing.origin.find(origin) != std::string::npos;
+  if (!is_said) standing.origin += (standing.origin.empty() ? "" : "; ") + origin;
+  standing.simulated = true;
+}
+
 /// The first simulated sequence's.
 const SimulatedOrigin* origin_of(const Dataset& dataset) {
   for (const std::unique_ptr<Sequence>& sequence : dataset.sequences) {
@@ -76,6 +83,11 @@ std::string split_warning(const std::string& split) {
 
 std::vector<std::string> doubts_of(const Result& result) {
   std::vector<std::string> doubts = result.doubts;
+  // Older results do not say it among their doubts.
+  const std::string disturbed = disturbed_doubt(mark_of(result));
+  const bool is_said = disturbed.empty() || std::ranges::find(doubts, disturbed) != doubts.end();
+  if (!is_said) doubts.push_back(disturbed);
+  if (auto changed = changed_labels(result)) doubts.push_back(std::move(*changed));
   if (const auto changed = changed_program_file(result)) {
     doubts.push_back(fmt::format("STALE: {} has changed since", changed->string()));
   }
@@ -91,6 +103,42 @@ std::vector<std::string> doubts_of(const Result& result) {
                                  counted(result.scans.size(), "scan is", "scans are")));
   }
   return doubts;
+}
+
+std::optional<std::string> changed_labels(const Result& result) {
+  const fs::path folder = result.folder() / "labels";
+  std::error_code error;
+  if (result.predictions || !fs::is_directory(folder, error)) return std::nullopt;
+  std::size_t lost = 0, other = 0;
+  std::string first_other;
+  for (const ScanRow& row : result.scans) {
+    const std::string name = row.stem + ".label";
+    const std::uintmax_t bytes = fs::file_size(folder / name, error);
+    if (error) {
+      ++lost;
+    } else if (bytes != row.points * sizeof(std::uint32_t) && other++ == 0) {
+      first_other = fmt::format(", first {} with {} for {} points", name,
+                                counted(bytes / sizeof(std::uint32_t), "label"), row.points);
+    }
+  }
+  if (lost + other == 0) return std::nullopt;
+  return fmt::format("LABELS CHANGED after the run: of {} {} are gone and {} of another size{}",
+                     counted(result.scans.size(), "label file"), lost, other, first_other);
+}
+
+DataMark mark_of(const Result& result) {
+  DataMark mark{result.from.simulated, ""};
+  const auto said = std::ranges::find_if(
+      result.doubts, [](const std::string& doubt) { return doubt.starts_with(kDisturbedDoubt); });
+  if (said != result.doubts.end()) {
+    mark.disturbed = said->substr(kDisturbedDoubt.size());
+    return mark;
+  }
+  if (mark.simulated) mark.disturbed = mark.simulated->perturb.value_or("");
+  for (const auto& [name, value] : result.from.reading) {
+    if (name == "perturb") mark = disturbed_by(std::move(mark), value);
+  }
+  return mark;
 }
 
 std::optional<fs::path> changed_program_file(const Result& result) {
@@ -182,8 +230,7 @@ Standing standing_of(const ResultSet& set) {
   for (const Result& sequence : set.sequences) {
     const std::optional<SimulatedOrigin>& origin = sequence.from.simulated;
     if (!origin) continue;
-    standing.simulated = true;
-    if (standing.origin.empty()) standing.origin = words_of(*origin);
+    add_origin(words_of(*origin), standing);
   }
   return standing;
 }
@@ -194,8 +241,10 @@ Standing standing_of(const ResultSet& first, const char* first_name, const Resul
   std::vector<Doubt> doubts;
   for (const std::string& doubt : one.doubts) doubts.push_back({first_name, doubt});
   for (const std::string& doubt : other.doubts) doubts.push_back({second_name, doubt});
-  return {one.simulated || other.simulated, one.simulated ? one.origin : other.origin,
-          told(doubts)};
+  Standing both = one;
+  both.doubts = told(doubts);
+  if (other.simulated) add_origin(other.origin, both);
+  return both;
 }
 
 std::string simulated_notice(const SimulatedOrigin& origin) {
@@ -215,8 +264,23 @@ Standing standing_of(const Dataset& dataset) {
       doubts.push_back({sequence->name(), std::move(doubt)});
     }
   }
-  const SimulatedOrigin* origin = origin_of(dataset);
-  return {origin != nullptr, origin != nullptr ? words_of(*origin) : "", told(doubts)};
+  Standing standing{.doubts = told(doubts)};
+  for (const std::unique_ptr<Sequence>& sequence : dataset.sequences) {
+    if (sequence->simulated()) add_origin(words_of(*sequence->simulated()), standing);
+  }
+  return standing;
+}
+
+Standing standing_of(std::span<const NamedMark> marks) {
+  Standing standing;
+  std::vector<Doubt> doubts;
+  for (const auto& [place, mark] : marks) {
+    if (mark.simulated) add_origin(words_of(*mark.simulated), standing);
+    std::string disturbed = disturbed_doubt(mark);
+    if (!disturbed.empty()) doubts.push_back({place, std::move(disturbed)});
+  }
+  standing.doubts = told(doubts);
+  return standing;
 }
 
 }  // namespace mosbench

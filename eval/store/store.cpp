@@ -326,7 +326,13 @@ bool ProductRecord::has(const std::string& file) const {
 
 void ProductRecord::write(const std::string& file, std::string_view bytes) {
   constexpr std::size_t kUnsaved = 50;
-  write_file_atomic(folder_ / file, bytes);
+  // A killed run leaves files that are not known yet, with the same bytes.
+  const fs::path path = folder_ / file;
+  if (!hashes_.contains(file) && is_there(path) && read_file(path) != bytes) {
+    throw UsageError(path.string() +
+                     ": was not written by mosbench run --write, expected no file of this name");
+  }
+  write_file_atomic(path, bytes);
   hashes_[file] = hash_of_text(bytes);
   if (++unsaved_ == kUnsaved) save();
 }

@@ -96,7 +96,8 @@ class ProductRecord {
   /// Returns whether `file`, a path below the folder, is there and known. Throws UsageError when it
   /// was changed since it was written.
   bool has(const std::string& file) const;
-  /// Writes the file as a whole. `save` makes it known; every 50th call does so, so that a killed
+  /// Writes the file as a whole; throws UsageError for one of this name that is not known and holds
+  /// something else. `save` makes it known; every 50th call does so, so that a killed
   /// run makes few files again.
   void write(const std::string& file, std::string_view bytes);
   void save();

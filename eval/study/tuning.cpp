@@ -7,6 +7,8 @@
 #include <set>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
 
@@ -142,6 +144,16 @@ class Chooser {
   StudyChoice choice_;
 };
 
+/// A study replaces what it tuned before, and nothing else.
+void refuse_foreign(const fs::path& file) {
+  try {
+    if (parse_json(read_file(file), file).contains("tuned_on")) return;
+  } catch (const DataError&) {  // refused below
+  }
+  throw UsageError(file.string() +
+                   ": is there and no preset of a study, expected no file of this name");
+}
+
 }  // namespace
 
 std::vector<StudyChoice> choices_of(const StudyPlan& plan, const DoneCells& cells) {
@@ -160,7 +172,12 @@ void write_presets(const std::vector<StudyChoice>& choices) {
     if (!choice.preset) continue;
     const std::string text = json_text(to_json(*choice.preset));
     const fs::path& file = choice.preset->file;
-    if (!is_there(file) || read_file(file) != text) write_file_atomic(file, text);
+    if (!is_there(file)) {
+      write_file_atomic(file, text);
+    } else if (read_file(file) != text) {
+      refuse_foreign(file);
+      write_file_atomic(file, text);
+    }
   }
 }
 

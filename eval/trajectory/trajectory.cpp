@@ -11,6 +11,7 @@
 #include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
+#include "eval/result/result_file.hpp"
 #include "eval/trajectory/pose_errors.hpp"
 
 namespace mosbench {
@@ -24,14 +25,21 @@ struct PosePath {
   std::string name;             ///< of the sequence, or the file's without extension
   std::filesystem::path place;  ///< the file, or the data set
   bool of_data_set = false;     ///< in the lidar's frame then, whatever its files hold
+  DataMark mark;                ///< of the scans that the poses are of
   PoseList list;                ///< stamps also where those of the data set's scans increase
 };
 
 constexpr const char* kExpected =
     "a data set, a folder of mosbench run --odometry, or files .txt, .csv or .tum";
 
+/// The mark of a run that found poses, or of the sequence beside whose scans they lie.
+DataMark mark_of_poses(const fs::path& file) {
+  const fs::path result = file.parent_path() / "result.json";
+  return is_there(result) ? mark_of(read_result(result)) : mark_of_file(file, 0);
+}
+
 PosePath path_of_file(std::string name, const fs::path& file, std::optional<PoseFormat> format) {
-  PosePath path{std::move(name), file, false, read_pose_list(file, format)};
+  PosePath path{std::move(name), file, false, mark_of_poses(file), read_pose_list(file, format)};
   if (path.list.poses.empty()) throw DataError(file, "holds no pose", "one row per scan");
   if (path.list.format == PoseFormat::kRollout) {
     for (Pose& pose : path.list.poses) pose = pose.inverse();
@@ -86,7 +94,7 @@ bool is_data_set(const fs::path& folder) {
 }
 
 PosePath path_of_sequence(const Sequence& sequence, const fs::path& root) {
-  PosePath path{sequence.name(), root, true, {}};
+  PosePath path{sequence.name(), root, true, mark_as_read(sequence), {}};
   for (std::size_t k = 0; k < sequence.size(); ++k) {
     path.list.poses.push_back(sequence.map_from_sensor(k));
     if (const auto stamp_ns = sequence.stamp_ns(k)) path.list.stamps_ns.push_back(*stamp_ns);
@@ -170,6 +178,7 @@ TrajectoryPair paired(PosePath estimate, PosePath truth, const TrajectoryOptions
   check_camera(truth, options.camera == CameraFrame::kTruth, "truth");
   TrajectoryPair pair{.name = estimate.name, .estimate = {}, .truth = {}, .remarks = {}};
   for (const PosePath* path : {&estimate, &truth}) {
+    pair.marks.push_back({path->place.string(), path->mark});
     for (std::string& remark : path->list.remarks(path->place)) {
       pair.remarks.push_back(std::move(remark));
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "datasets/formats/pose_file.hpp"
+#include "eval/result/result.hpp"
 
 namespace mosbench {
 
@@ -25,6 +26,7 @@ struct TrajectoryPair {
   std::string name;  ///< the estimate's file name without extension
   std::vector<Pose> estimate, truth;
   std::vector<std::string> remarks;  ///< how poses were paired
+  std::vector<NamedMark> marks{};    ///< of the data that both are of
 };
 
 /// The poses of two places, `estimates` and `truths`: one and one, whatever their names, else those

@@ -26,7 +26,7 @@ NUMERIC = {"SiMpLE, gradient=numeric": ["--odometry", "simple", "--set", "gradie
 
 def cpu_ms_per_scan(program, sequence, limits, engine, out):
     """Exit code 1 says that poses are doubtful."""
-    words = [program, "odometry", sequence, "-o", out, "--threads", "1", *engine]
+    words = [program, "odometry", sequence, "-o", out, "--overwrite", "--threads", "1", *engine]
     if limits:
         least_m, most_m = limits.split(",")
         words += ["--set", f"min_range_m={least_m},max_range_m={most_m}"]

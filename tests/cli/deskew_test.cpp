@@ -47,9 +47,9 @@ class SkewedDrive : public testing::Test {
   std::string path(const char* name) const { return (folder_ / name).string(); }
   /// The largest error of the positions that odometry finds, metres.
   double error_m(const char* kind, const char* deskew) const {
-    const cli::Answer found =
-        cli::run({"odometry", path("s"), "-o", path("found.txt"), "--odometry", kind,
-                  "--bin-columns", "5", "--point-times", "column", "--deskew", deskew});
+    const cli::Answer found = cli::run({"odometry", path("s"), "-o", path("found.txt"),
+                                        "--odometry", kind, "--bin-columns", "5", "--point-times",
+                                        "column", "--deskew", deskew, "--overwrite"});
     EXPECT_LE(found.exit_code, 1) << found.err;
     const cli::Answer score =
         cli::run({"trajectory", path("found.txt"), "--truth", path("truth.txt"), "--json"});

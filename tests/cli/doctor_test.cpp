@@ -199,5 +199,21 @@ TEST_F(DoctorCommand, RefusesWhatIsNoFolderAsUnusable) {
   EXPECT_THAT(answer.out, HasSubstr("is no folder that can be listed"));
 }
 
+TEST(DoctorMarks, AreThoseOfSimulatedAndDisturbedData) {
+  const TempFolder folder;
+  const std::string noise = "range_noise_m=0.01,seed=3", data = folder / "sim";
+  ASSERT_EQ(cli::run({"simulate", "--layout", "semantickitti", "--scene", "room", "--scans", "6",
+                      "--seed", "5", "--perturb", noise, "--out", data})
+                .exit_code,
+            0);
+  for (const std::vector<std::string>& as : {std::vector<std::string>{}, {"--json"}}) {
+    std::vector<std::string> words = {"doctor", data};
+    words.insert(words.end(), as.begin(), as.end());
+    EXPECT_THAT(cli::run(words).out,
+                testing::AllOf(testing::HasSubstr("simulated: scene room, seed 5"),
+                               testing::HasSubstr("disturbed on purpose by " + noise)));
+  }
+}
+
 }  // namespace
 }  // namespace mosbench

@@ -131,6 +131,46 @@ TEST_F(Exec, IsRefusedByTablesWhenItsFilesHaveChangedSince) {
   EXPECT_EQ(cli::run({"stats", out}).exit_code, 0);
 }
 
+TEST_F(Exec, IsRunAgainWhereTheFilesOfItsResultHaveChangedButNotThoseOfNow) {
+  const auto from = [&](const char* place) {
+    return cli::run(command("sh ours.sh"), [&] { fs::current_path(folder_ / place); });
+  };
+  for (const char* script : {"a/ours.sh", "b/ours.sh"}) folder_.write(script, client() + "\n");
+  ASSERT_EQ(from("a").exit_code, 0);
+  EXPECT_THAT(from("b").err, HasSubstr("finished by an earlier run, kept"));
+  folder_.write("a/ours.sh", "# better\n" + client() + "\n");
+  EXPECT_EQ(cli::run({"stats", folder_ / "out"}).exit_code, 3);
+  EXPECT_THAT(from("b").err, HasSubstr("room: the program has changed, it is run again"));
+  EXPECT_EQ(cli::run({"stats", folder_ / "out"}).exit_code, 0);
+}
+
+TEST_F(Exec, LeavesNoStaleResultInAStudyThatIsRunAgain) {
+  folder_.write("ours.sh", client() + "\n");
+  folder_.write("s.yaml",
+                "name: s\nprotocol: semantickitti-mos\n"
+                "data: {name: room, path: room, dataset: semantickitti}\n"
+                "methods: [{name: ours, method: \"exec:sh ours.sh\"}]\n");
+  const auto there = [&] { fs::current_path(folder_.path()); };
+  const std::vector<std::string> run = {"run", "s.yaml", "--out", "out", "--threads", "1"};
+  ASSERT_EQ(cli::run(run, there).exit_code, 0);
+  folder_.write("ours.sh", "# better\n" + client() + "\n");
+  EXPECT_EQ(cli::run({"stats", folder_ / "out/cells"}).exit_code, 3);
+  const cli::Answer again = cli::run(run, there);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.err, HasSubstr("1 cell of a program that has changed since: dropped"));
+  EXPECT_EQ(cli::run({"stats", folder_ / "out/cells"}).exit_code, 0);
+}
+
+TEST_F(Exec, IsRefusedAtOnceWhereItNamesAFileThatIsNotThere) {
+  for (const std::string name : {"weights.pt", "net/weights"}) {
+    const cli::Answer answer = cli::run(command(client() + " # reads " + name));
+    EXPECT_EQ(answer.exit_code, 2) << name;
+    EXPECT_THAT(answer.err, HasSubstr("names " + name + " behind its #, which does not exist"));
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+  }
+  EXPECT_EQ(cli::run(command(client() + " # version 1.2, see https://a.b/c, e.g.")).exit_code, 0);
+}
+
 TEST_F(Exec, FailsWhenItsFolderIsRemovedMeanwhile) {
   // The answers to the start and to two scans have 24 + 2 * (16 + 34,576) bytes.
   const std::string partial = (folder_ / "out/room.partial").string();

@@ -129,8 +129,8 @@ INSTANTIATE_TEST_SUITE_P(Odometry, BadDrives, testing::ValuesIn(mistakes()),
 
 TEST_P(BadDrives, GetAPosePerScanAndSayWhichAreDoubtful) {
   for (const char* kind : {"simple", "kiss"}) {
-    const cli::Answer found =
-        cli::run({"odometry", path("s"), "-o", path("poses.txt"), "--odometry", kind});
+    const cli::Answer found = cli::run(
+        {"odometry", path("s"), "-o", path("poses.txt"), "--odometry", kind, "--overwrite"});
     ASSERT_EQ(found.exit_code, GetParam().exit_code) << kind << found.out << found.err;
     EXPECT_THAT(found.out, HasSubstr(GetParam().said)) << kind;
     // Refuses numbers that are not finite.

@@ -429,9 +429,10 @@ TEST_F(PredictionsTest, GiveTheSameResultFileForAnyNumberOfThreads) {
   EXPECT_EQ(read_file(folder_ / "1/room/result.json"), read_file(folder_ / "3/room/result.json"));
 }
 
-/// A .npy file of float32 numbers.
-std::string npy(const std::vector<float>& numbers) {
-  std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" +
+/// A .npy file of numbers of a type.
+template <typename Number>
+std::string npy(const std::vector<Number>& numbers, const std::string& type = "<f4") {
+  std::string header = "{'descr': '" + type + "', 'fortran_order': False, 'shape': (" +
                        std::to_string(numbers.size()) + ",), }";
   header.resize(118, ' ');
   header.back() = '\n';
@@ -439,7 +440,7 @@ std::string npy(const std::vector<float>& numbers) {
   bytes += {'\1', '\0', static_cast<char>(header.size()), '\0'};
   bytes += header;
   return bytes.append(reinterpret_cast<const char*>(numbers.data()),
-                      numbers.size() * sizeof(float));
+                      numbers.size() * sizeof(Number));
 }
 
 std::string confidences(const std::vector<std::uint32_t>& labels) {
@@ -459,14 +460,37 @@ TEST_F(PredictionsTest, OfConfidencesAreMovingAboveOneHalf) {
       [](const std::string& stem) { return stem + "/" + stem + "_dt_1e-01.npy"; }, confidences);
   for (std::size_t k = 1; k < kScansPredicted; ++k) {
     const std::string earlier = cli::stem(k) + "/" + cli::stem(k - 1) + "_dt_1e-01.npy";
-    write_file_atomic(folder_ / "4dmos/confidences/room" / earlier, npy({0.9F}));
+    write_file_atomic(folder_ / "4dmos/confidences/room" / earlier, npy<float>({0.9F}));
   }
   EXPECT_EQ(summary(score(folder_ / "4dmos")), expected_);
-  write_file_atomic(folder_ / "confident/000003.npy", npy({0.5F, 1.5F}));
+  write_file_atomic(folder_ / "confident/000003.npy", npy<float>({0.5F, 1.5F}));
   EXPECT_THAT(score(folder_ / "confident").err,
               HasSubstr("000003.npy: holds 2 numbers, expected one for each of the 8640 points"));
   write_file_atomic(folder_ / "confident/000003.npy", "no array");
   EXPECT_THAT(score(folder_ / "confident").err, HasSubstr("000003.npy: is no .npy file"));
+}
+
+TEST_F(PredictionsTest, OfIntegersInNumpyFilesAreLabels) {
+  const auto file_of = [](const std::string& stem) { return stem + ".npy"; };
+  write("ids", file_of, [](const auto& labels) { return npy(labels, "<u4"); });
+  EXPECT_EQ(summary(score(folder_ / "ids")), expected_);
+  for (const int still : {0, 1}) {
+    const std::string name = still == 0 ? "flags" : "classes";
+    write(name, file_of, [&](const std::vector<std::uint32_t>& labels) {
+      std::vector<std::uint8_t> classes;
+      for (const std::uint32_t label : labels) {
+        classes.push_back(static_cast<std::uint8_t>(still + (label == kMovingLabel ? 1 : 0)));
+      }
+      return npy(classes, "|u1");
+    });
+    EXPECT_EQ(summary(score(folder_ / name)), expected_) << name;
+    EXPECT_THAT(score(folder_ / name).out, HasSubstr("taken for a network's classes"));
+  }
+  write_file_atomic(folder_ / "ids/000003.npy", npy<float>({0.5F}));
+  EXPECT_THAT(score(folder_ / "ids").err,
+              HasSubstr("000003.npy: holds reals, and those before integers, expected label ids"));
+  write_file_atomic(folder_ / "ids/000003.npy", npy<std::uint32_t>({9, 251}, "<u4"));
+  EXPECT_THAT(score(folder_ / "ids").err, HasSubstr("000003.npy: has 2 labels, expected one for"));
 }
 
 TEST_F(PredictionsTest, NamedByPositionMayHaveNoLeadingZeros) {

@@ -176,6 +176,12 @@ TEST_F(Products, AreAddedToFinishedRunsAndKept) {
   EXPECT_EQ(cli::contents(folder_ / "out"), first);
   std::filesystem::remove(out("products.json"));
   write_file_atomic(out("boxes.txt"), "of another program");
+  const cli::Answer foreign =
+      cli::run({"run", folder_ / "room", "--out", folder_ / "out", "--write", "boxes"});
+  EXPECT_EQ(foreign.exit_code, 2);
+  EXPECT_THAT(foreign.err, HasSubstr("boxes.txt: was not written by mosbench run --write"));
+  EXPECT_EQ(read_file(out("boxes.txt")), "of another program");
+  std::filesystem::remove(out("boxes.txt"));
   run("boxes,static-cloud");
   EXPECT_EQ(cli::contents(folder_ / "out"), first);
   run("");

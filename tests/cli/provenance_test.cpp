@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <map>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,20 @@ std::map<std::string, std::string> shown(const fs::path& run, const std::string&
   succeed({"report", run.string(), "--scans", "none", "-o", (run / "page.html").string()});
   outputs["report"] = read_file(run / "page.html");
   return outputs;
+}
+
+/// The only file below a folder whose name ends so.
+fs::path file_below(const fs::path& folder, const std::string& end) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.path().native().ends_with(end)) return entry.path();
+  }
+  ADD_FAILURE() << folder << " has no file *" << end;
+  return {};
+}
+
+/// A text as LaTeX writes it.
+std::string latex(const std::string& text) {
+  return std::regex_replace(text, std::regex("_"), "\\_");
 }
 
 void expect_marked(const std::string& data, const fs::path& out) {
@@ -112,6 +127,95 @@ TEST(SimulatedMark, IsInheritedByWhatIsConvertedDisturbedOrGetsOtherPoses) {
   const auto read = [](const fs::path& file) { return ordered_json::parse(read_file(file)); };
   EXPECT_EQ(read(as_kitti / "simulated.json").at("layout"), "semantickitti");
   expect_marked((as_kitti / "sequences").string(), folder / "out");
+}
+
+TEST(SimulatedMark, IsInsideABagThatIsCopiedAlone) {
+  const TempFolder folder;
+  const std::string root = simulated_in(folder).string();
+  const std::map<std::string, std::string> bags = {
+      {"ros2-mcap", ".mcap"}, {"ros2-db3", ".db3"}, {"doals-bag", ".bag"}};
+  for (const auto& [layout, end] : bags) {
+    const fs::path to = folder / layout;
+    succeed({"convert", root, "--layout", layout, "--out", to.string()});
+    const fs::path bag = file_below(to, end);
+    fs::create_directories(folder / "alone");
+    const fs::path alone = folder / ("alone/drive" + end);
+    fs::copy(bag, alone);
+    const cli::Answer run =
+        succeed({"run", alone.string(), "--out", (folder / ("out" + end)).string()});
+    EXPECT_THAT(run.out, HasSubstr("SIMULATED data (scene room, seed 5")) << layout;
+  }
+}
+
+/// A doubt that stands in all that is shown of data, and of what is run on them.
+void expect_doubt(const fs::path& data, const fs::path& out, const std::string& doubt) {
+  const cli::Answer run = succeed({"run", data.string(), "--out", out.string()});
+  EXPECT_THAT(run.out, HasSubstr(doubt)) << data;
+  for (const auto& [name, text] : shown(out, data.string())) {
+    EXPECT_THAT(text, HasSubstr(name.ends_with("latex") ? latex(doubt) : doubt)) << name;
+  }
+}
+
+TEST(DisturbedMark, StandsInEveryOutputAndMovesWithTheSequence) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "room", 6);
+  const std::string noise = "range_noise_m=0.01,seed=3", loss = "dropout_probability=0.1,seed=0";
+  const cli::Answer converted =
+      succeed({"convert", (folder / "room").string(), "--perturb", noise, "--layout",
+               "semantickitti", "--out", (folder / "set").string()});
+  EXPECT_THAT(converted.out, HasSubstr("disturbed on purpose by " + noise));
+  fs::rename(folder / "set/sequences/room", folder / "renamed");
+  expect_doubt(folder / "renamed", folder / "of-renamed", "disturbed on purpose by " + noise);
+  const auto again = [&](const std::string& layout, const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"convert", (folder / "renamed").string(), "--layout", layout,
+                                      "--out",   (folder / layout).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    succeed(words);
+    return folder / layout;
+  };
+  expect_doubt(again("doals", {"--perturb", loss}), folder / "of-doals",
+               "disturbed on purpose by " + noise + ", then " + loss);
+  const fs::path bag = file_below(again("ros2-mcap", {}), ".mcap");
+  fs::copy(bag, folder / "alone.mcap");
+  const cli::Answer alone = succeed(
+      {"run", (folder / "alone.mcap").string(), "--out", (folder / "of-bag").string(), "--json"});
+  EXPECT_THAT(alone.out, HasSubstr("disturbed on purpose by " + noise));
+  const cli::Answer found =
+      cli::run({"odometry", (folder / "renamed").string(), "-o", (folder / "p.txt").string()});
+  EXPECT_THAT(found.out, HasSubstr("disturbed on purpose by " + noise));
+}
+
+TEST(DisturbedMark, IsADoubtOfDataThatAreDisturbedAsTheyAreRead) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "room", 6);
+  const std::string doubt = "disturbed on purpose by range_noise_m=0.01,seed=3";
+  const fs::path out = folder / "out";
+  succeed({"run", (folder / "room").string(), "--perturb", "range_noise_m=0.01,seed=3", "--out",
+           out.string()});
+  EXPECT_THAT(succeed({"stats", out.string()}).out, HasSubstr(doubt));
+  // As an older program wrote it.
+  ordered_json result = ordered_json::parse(read_file(out / "room/result.json"));
+  result.erase("doubts");
+  folder.write("out/room/result.json", result.dump());
+  EXPECT_THAT(succeed({"stats", out.string()}).out, HasSubstr(doubt));
+}
+
+TEST(DisturbedMark, OfSimulatedDataIsADoubt) {
+  const TempFolder folder;
+  const fs::path sim = folder / "sim";
+  succeed({"simulate", "--layout", "semantickitti", "--scene", "room", "--scans", "6", "--seed",
+           "5", "--perturb", "pose_noise_m=0.01,seed=3", "--out", sim.string()});
+  expect_doubt(sim / "sequences/08", folder / "out",
+               "disturbed on purpose by pose_noise_m=0.01,seed=3");
+}
+
+TEST(DisturbedMark, IsRefusedWhereItCannotBeUnderstood) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "room", 6);
+  folder.write("room/disturbed.txt", "by my dog\n");
+  const cli::Answer run = cli::run({"run", (folder / "room").string(), "--out", folder / "out"});
+  EXPECT_EQ(run.exit_code, 3);
+  EXPECT_THAT(run.err, HasSubstr("room/disturbed.txt: says nothing of disturbances, expected"));
 }
 
 TEST(SimulatedMark, IsNotTakenFromTheFolderAround) {

@@ -105,5 +105,30 @@ TEST_F(ResultCounts, ThatAreNotThoseOfTheSummaryAreRefused) {
   EXPECT_THAT(refusal(content_), HasSubstr("\"fn\" of its scans add up to "));
 }
 
+TEST(ResultLabels, ThatWereReplacedAfterTheRunAreADoubtOfEveryTable) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "room", 4);
+  const std::string out = folder / "out", labels = folder / "out/room/labels/";
+  ASSERT_EQ(cli::run({"run", folder / "room", "--out", out}).exit_code, 0);
+  const char* doubt = "LABELS CHANGED after the run: of 4 label files ";
+  EXPECT_THAT(cli::run({"stats", out}).out, testing::Not(testing::HasSubstr(doubt)));
+  std::filesystem::remove(labels + "000001.label");
+  folder.write("out/room/labels/000002.label", "12345678");
+  const std::string whole = std::string(doubt) +
+                            "1 are gone and 1 of another size, first 000002.label with 2 labels "
+                            "for 8640 points";
+  for (const std::vector<std::string>& words :
+       {std::vector<std::string>{"stats", out}, {"rank", out}, {"compare", out, out}}) {
+    for (const char* as : {"text", "json", "csv"}) {
+      std::vector<std::string> all = words;
+      all.insert(all.end(), {"--as", as});
+      EXPECT_THAT(cli::run(all).out, testing::HasSubstr(whole)) << words.front() << as;
+    }
+  }
+  // A result alone, as of a baseline, has none that could be others.
+  std::filesystem::remove_all(labels);
+  EXPECT_THAT(cli::run({"stats", out}).out, testing::Not(testing::HasSubstr(doubt)));
+}
+
 }  // namespace
 }  // namespace mosbench

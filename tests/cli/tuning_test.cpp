@@ -76,6 +76,12 @@ TEST_F(Tuning, WritesAPresetThatRunTakes) {
   const cli::Answer part = run({"run", path("data"), "--dataset", "semantickitti", "--sequences",
                                 "00", "--scans", ":8", "--preset", preset, "--out", path("part")});
   EXPECT_THAT(part.out, HasSubstr("tuned on a sequence of this name"));
+  // What the study did not write stays.
+  write_file_atomic(preset, "my notes");
+  const cli::Answer foreign = run({"run", path("s.yaml"), "--out", path("out"), "--threads", "1"});
+  EXPECT_EQ(foreign.exit_code, 2);
+  EXPECT_THAT(foreign.err, HasSubstr("underwood.preset.json: is there and no preset of a study"));
+  EXPECT_EQ(read_file(preset), "my notes");
 }
 
 TEST_F(Tuning, RefusesPresetsOfAnotherMethodAndOtherFiles) {

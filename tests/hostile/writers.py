@@ -39,7 +39,7 @@ WRITERS = {
     "convert to a bag": "convert data --layout doals-bag --out out",
     "bless": "compare baseline three --accept --even-if",
     "bless anew": "compare out three --accept",
-    "odometry": "odometry data --threads 1 -o old.txt",
+    "odometry": "odometry data --threads 1 -o old.txt --overwrite",
 }
 BY_THE_CLOCK = {"p.json", "t.json"}
 OLD_FILES = {"old.html": b"an old page", "old.png": b"an old picture", "old.txt": b"old poses"}

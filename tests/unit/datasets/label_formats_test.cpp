@@ -69,6 +69,34 @@ TEST_F(LabelFiles, AreNumpyArraysOfAnyType) {
   EXPECT_EQ(read("a.npy", npy("|b1", "3,", three<std::uint8_t>(0, 1, 0))), (Labels{9, 251, 9}));
 }
 
+/// A .npz archive whose directory states a size of its one member, stored as it is.
+std::string npz(const std::string& content, std::uint32_t stated_bytes) {
+  const auto number = [](std::uint32_t value, std::size_t bytes) {
+    return std::string(reinterpret_cast<const char*>(&value), bytes);
+  };
+  const std::string name = "labels.npy", no_field(2, '\0');
+  const std::string sizes = number(static_cast<std::uint32_t>(content.size()), 4) +
+                            number(stated_bytes, 4) + number(10, 2) + no_field;
+  const std::string start(8, '\0');  // stored; without date and sum
+  const std::string file =
+      "PK\x03\x04" + std::string(2, '\0') + no_field + start + no_field + sizes + name + content;
+  const std::string entry = "PK\x01\x02" + std::string(4, '\0') + no_field + start + no_field +
+                            sizes + std::string(14, '\0') + name;
+  return file + entry + "PK\x05\x06" + std::string(6, '\0') + number(1, 2) +
+         number(static_cast<std::uint32_t>(entry.size()), 4) +
+         number(static_cast<std::uint32_t>(file.size()), 4) + no_field;
+}
+
+TEST_F(LabelFiles, InArchivesHaveTheSizeThatIsStated) {
+  const std::string array = npy("|u1", "3,", three<std::uint8_t>(9, 251, 0));
+  const auto bytes = static_cast<std::uint32_t>(array.size());
+  EXPECT_EQ(read("a.npz", npz(array, bytes)), (Labels{9, 251, 0}));
+  EXPECT_THAT(error("a.npz", npz(array, bytes + 1)),
+              AllOf(HasSubstr("a.npz: its member \"labels.npy\" has "),
+                    HasSubstr("do not unpack to the " + std::to_string(bytes + 1) +
+                              " that the archive states")));
+}
+
 TEST_F(LabelFiles, NameTheFirstLabelThatIsNone) {
   EXPECT_THAT(error("a.npy", npy("<f4", "3,", three(9.0F, 250.7F, 0.0F))),
               AllOf(HasSubstr("a.npy: point 1 has the label 250.7"), HasSubstr("a label id")));
