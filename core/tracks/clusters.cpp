@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
+#include "core/base/median.hpp"
 #include "core/tracks/low_points.hpp"
 
 namespace mosbench::tracks {
@@ -122,21 +124,16 @@ Reason reason_of(const Evidence& evidence) {
   return evidence.through_after > 0 ? Reason::kDeparted : Reason::kGrown;
 }
 
-float median_of(std::vector<float>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 void measure(const LookedScan& scan, const Points& points, Cluster& cluster) {
-  std::vector<float> x, y;
+  std::vector<double> x, y;
   for (const std::uint32_t i : cluster.points) {
     cluster.seen += seen_of(points.evidence[i]);
     cluster.reasons.push_back(reason_of(points.evidence[i]));
     x.push_back(scan.positions_m[i].x());
     y.push_back(scan.positions_m[i].y());
   }
-  cluster.median_m = {median_of(x), median_of(y)};
+  cluster.median_m = {static_cast<float>(upper_median(std::move(x))),
+                      static_cast<float>(upper_median(std::move(y)))};
 }
 
 /// Completes clusters with the points around them.

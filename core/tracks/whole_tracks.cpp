@@ -21,11 +21,6 @@ std::vector<std::uint32_t> offsets_of(const ScanPeriod& period) {
   return offsets;
 }
 
-RunContext context_without_scores(RunContext context) {
-  context.scores = false;
-  return context;
-}
-
 }  // namespace
 
 ScanPeriod::ScanPeriod(const std::vector<std::int64_t>& stamps_ns) {
