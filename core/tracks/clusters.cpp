@@ -50,17 +50,27 @@ Part part_of(const Eigen::Vector3f& point, bool proposed, std::span<const Look> 
   return proposed ? Part::kProposed : Part::kOwn;
 }
 
-Points look_at(const LookedScan& scan, std::span<const Look> looks, ThreadPool& pool) {
-  const std::size_t count = scan.points_m.size();
-  Points points{std::vector<Part>(count), std::vector<Evidence>(count),
-                low_points(scan.positions_m)};
-  const std::vector<Look> some = some_of(looks);
+std::vector<std::uint8_t> in_range(const LookedScan& scan) {
   const auto least = static_cast<float>(scan.min_range_m);
   const auto most = static_cast<float>(scan.max_range_m);
+  std::vector<std::uint8_t> inside;
+  inside.reserve(scan.points_m.size());
+  for (const Eigen::Vector3f& point : scan.points_m) {
+    const float range = point.norm();
+    inside.push_back(range > least && range <= most ? 1 : 0);  // NaN is not
+  }
+  return inside;
+}
+
+Points look_at(const LookedScan& scan, std::span<const Look> looks, ThreadPool& pool) {
+  const std::size_t count = scan.points_m.size();
+  Points points{std::vector<Part>(count), std::vector<Evidence>(count), {}};
+  const std::vector<Look> some = some_of(looks);
+  const std::vector<std::uint8_t> inside = in_range(scan);
+  points.is_low = low_points(scan.positions_m, inside);
   pool.for_ranges(count, 1024, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) {
-      const float range = scan.points_m[i].norm();
-      if (!(range > least && range <= most)) continue;  // NaN, too
+      if (inside[i] == 0) continue;
       const bool proposed = scan.proposed[i] != 0;
       points.parts[i] = Part::kRest;
       if (!proposed && points.is_low[i] != 0) continue;

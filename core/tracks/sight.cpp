@@ -36,6 +36,7 @@ Bearing bearing_of(const Eigen::Vector3f& p) {
   const float level = p.x() * p.x() + p.y() * p.y();
   Bearing bearing;
   bearing.range_m = std::sqrt(level + p.z() * p.z());
+  if (!std::isfinite(bearing.range_m)) return bearing;
   bearing.row = static_cast<int>(
       std::floor(-angle_of(p.z(), std::sqrt(level)) * kRowsPerRadian));
   const int column =
