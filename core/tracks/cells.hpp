@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 #include <unordered_map>
@@ -14,7 +13,7 @@ namespace mosbench::tracks {
 /// A square of the ground plan.
 struct Cell {
   int x = 0, y = 0;
-  auto operator<=>(const Cell&) const = default;
+  bool operator==(const Cell&) const = default;
 };
 
 inline Cell cell_of(const Eigen::Vector3f& position_m, float side_m) {

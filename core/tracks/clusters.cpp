@@ -20,7 +20,7 @@ enum class Part : std::uint8_t { kOutside, kRest, kProposed, kOwn };
 /// The points of a scan with what is known of them.
 struct Points {
   std::vector<Part> parts;
-  std::vector<Evidence> evidence;    // of those proposed or of its own
+  std::vector<Evidence> evidence;  // of those proposed or of its own
   std::vector<std::uint8_t> is_low;
 };
 

@@ -6,7 +6,8 @@ Evidence evidence_of(const Eigen::Vector3f& point_m, std::span<const Look> looks
   Evidence evidence;
   for (const Look& look : looks) {
     const Sight sight = look.at(point_m);
-    if (sight == Sight::kThrough) ++(look.before ? evidence.through_before : evidence.through_after);
+    if (sight == Sight::kThrough)
+      ++(look.before ? evidence.through_before : evidence.through_after);
     if (sight == Sight::kHit) ++(look.before ? evidence.hit_before : evidence.hit_after);
   }
   return evidence;

@@ -147,9 +147,8 @@ std::vector<std::shared_ptr<Track>> ObjectTracks::enter(std::uint32_t scan,
     }
   }
   for (const std::shared_ptr<Track>& track : tracks) {
-    std::erase_if(whole(track)->sightings, [&](const Sighting& sighting) {
-      return sighting.scan + window_scans_ < scan;
-    });
+    std::erase_if(whole(track)->sightings,
+                  [&](const Sighting& sighting) { return sighting.scan + window_scans_ < scan; });
   }
   recent_.push_back(std::move(opened));
   if (recent_.size() > kScans) recent_.pop_front();

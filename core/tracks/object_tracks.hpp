@@ -36,8 +36,8 @@ class Track {
   std::shared_ptr<Track> merged_into_;
 };
 
-/// Links clusters of consecutive scans: a cluster goes on in the nearest one of the next scan, or of
-/// the one after, as far as 10 m/s reach, at most 2 m a scan. Those that meet are one object.
+/// Links clusters of consecutive scans: a cluster goes on in the nearest one of the next scan, or
+/// of the one after, as far as 10 m/s reach, at most 2 m a scan. Those that meet are one object.
 class ObjectTracks {
  public:
   /// Sightings more than `window_scans` before the last scan are forgotten.

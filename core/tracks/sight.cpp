@@ -37,8 +37,7 @@ Bearing bearing_of(const Eigen::Vector3f& p) {
   Bearing bearing;
   bearing.range_m = std::sqrt(level + p.z() * p.z());
   if (!std::isfinite(bearing.range_m)) return bearing;
-  bearing.row = static_cast<int>(
-      std::floor(-angle_of(p.z(), std::sqrt(level)) * kRowsPerRadian));
+  bearing.row = static_cast<int>(std::floor(-angle_of(p.z(), std::sqrt(level)) * kRowsPerRadian));
   const int column =
       static_cast<int>(std::floor(angle_of(p.y(), p.x()) * kColumnsPerRadian)) % kColumns;
   bearing.column = column < 0 ? column + kColumns : column;

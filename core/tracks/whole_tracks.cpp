@@ -95,8 +95,8 @@ std::vector<Look> WholeTracks::looks_at(std::uint32_t scan) {
   std::vector<Look> looks;
   const auto add = [&](std::uint32_t other, bool before) {
     const SeenScan& there = held(other).seen;
-    looks.push_back({&there.image,
-                     (there.map_from_sensor.inverse() * map_from_here).cast<float>(), before});
+    looks.push_back(
+        {&there.image, (there.map_from_sensor.inverse() * map_from_here).cast<float>(), before});
   };
   for (const std::uint32_t offset : offsets_) {
     if (scan >= first_held_ + offset) add(scan - offset, true);
@@ -171,7 +171,8 @@ LabelledScan WholeTracks::judged(HeldScan& scan) const {
       if (moving) result.labels[point] = kMovingLabel;
       if (!context().scores) continue;
       result.scores[point] =
-          seen.looks == 0 ? 0 : static_cast<float>(seen.looks_through) / static_cast<float>(seen.looks);
+          seen.looks == 0 ? 0
+                          : static_cast<float>(seen.looks_through) / static_cast<float>(seen.looks);
       if (moving) result.reasons[point] = cluster.reasons[j];
     }
   }

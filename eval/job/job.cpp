@@ -283,8 +283,8 @@ SettingChange change_of(const std::string& assignment, const MethodKind& method)
   reader.read_assignment(assignment);
   const std::vector<SettingChange> changes = reader.take();
   if (changes.size() == 1) return changes.front();
-  throw UsageError(fmt::format("--set {}: stands for {}, expected one setting", assignment,
-                               to_words(changes)));
+  throw UsageError(
+      fmt::format("--set {}: stands for {}, expected one setting", assignment, to_words(changes)));
 }
 
 std::optional<DatasetKind> dataset_kind_option(const std::string& name) {

@@ -13,10 +13,9 @@ namespace mosbench::hmm_mos_plus {
 
 /// The settings of the paper's method that this one has, too: those of its map.
 inline constexpr std::array<std::string_view, 10> kMapSettings = {
-    "voxel_size_m",          "occupancy_sigma_m",  "min_range_m",
-    "max_range_m",           "delay_scans",        "track_window_s",
-    "global_window_scans",   "min_state_probability", "transition_epsilon",
-    "distance_field_scans"};
+    "voxel_size_m",       "occupancy_sigma_m",   "min_range_m",         "max_range_m",
+    "delay_scans",        "track_window_s",      "global_window_scans", "min_state_probability",
+    "transition_epsilon", "distance_field_scans"};
 
 /// Of the cube around a seed in which voxels should be known.
 inline constexpr int kKnownRadius = 2;

@@ -1,3 +1,5 @@
+#include "core/tracks/sight.hpp"
+
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -5,7 +7,6 @@
 
 #include "core/tracks/looks.hpp"
 #include "core/tracks/low_points.hpp"
-#include "core/tracks/sight.hpp"
 
 namespace mosbench::tracks {
 namespace {
@@ -77,7 +78,7 @@ TEST(Looks, KnowWhatTheSensorCarries) {
 TEST(LowPoints, LieOnTheGroundOfTheirNeighbourhood) {
   const std::vector<Eigen::Vector3f> positions = {
       {0.5F, 0.5F, 0}, {0.5F, 0.5F, 0.19F}, {0.5F, 0.5F, 0.3F}, {1.5F, 0.5F, 0.15F},
-      {5.5F, 0.5F, 1}, {5.5F, 0.5F, 1.3F}, {5.5F, 0.5F, 0}};
+      {5.5F, 0.5F, 1}, {5.5F, 0.5F, 1.3F},  {5.5F, 0.5F, 0}};
   EXPECT_EQ(low_points(positions, std::vector<std::uint8_t>{1, 1, 1, 1, 1, 1, 0}),
             (std::vector<std::uint8_t>{1, 1, 0, 1, 1, 0, 0}));
 }

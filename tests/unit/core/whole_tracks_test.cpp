@@ -78,8 +78,9 @@ TEST(WholeTracks, CompleteAWalkerFromItsFirstToItsLastScan) {
 }
 
 TEST(WholeTracks, KnowAParkedCarThatComesIntoView) {
-  const TrackScene scene{.things = {{{{8, 3, 0.2}, {12, 4.8, 1.6}}}, {{{5, 2, 0.1}, {6, 2.3, 2.5}}}},
-                         .sensor_velocity_m_s = {1.5, 0, 0}};
+  const TrackScene scene{
+      .things = {{{{8, 3, 0.2}, {12, 4.8, 1.6}}}, {{{5, 2, 0.1}, {6, 2.3, 2.5}}}},
+      .sensor_velocity_m_s = {1.5, 0, 0}};
   const Judged judged = judge(scene, [](int scan, int) { return scan > 5 && scan < 20; });
   EXPECT_LT(judged.share[0], 0.01);
   EXPECT_LT(judged.share[1], 0.01);
