@@ -10,9 +10,9 @@
 namespace mosbench::tracks {
 namespace {
 
-constexpr int kJoinCells = 2, kNearCells = 2, kRimCells = 3;
+constexpr int kJoinCells = 2, kRimCells = 3;
 constexpr std::size_t kLeastOwn = 8;
-constexpr float kBeyond_m = 0.3F;  // a near point may be so much above or below its cluster
+constexpr float kBeyond_m = 0.3F;  // so much above or below its cluster, few looks suffice
 
 /// What a point is before clusters are known.
 enum class Part : std::uint8_t { kOutside, kRest, kProposed, kOwn };
@@ -158,14 +158,13 @@ class Completion {
         height.high_m = std::max(height.high_m, scan.positions_m[i].z());
       }
     }
-    mark(kNearCells, near_);
-    mark(kRimCells, rim_);
+    mark_rim();
     for (std::uint32_t i = 0; i < points.parts.size(); ++i) {
       if (points.parts[i] != Part::kRest) continue;
       if (points.is_low[i] != 0 && scan.proposed[i] == 0) continue;
       const Cell cell = cell_of(scan.positions_m[i], kCell_m);
       const auto found = rim_.find(cell);
-      if (found != rim_.end()) wanted_.push_back({i, found->second, near_.contains(cell)});
+      if (found != rim_.end()) wanted_.push_back({i, found->second});
     }
   }
 
@@ -194,13 +193,12 @@ class Completion {
   };
   struct Wanted {
     std::uint32_t point, cluster;
-    bool near;
   };
 
-  void mark(int reach, CellMap<std::uint32_t>& marked) const {
+  void mark_rim() {
     for (std::uint32_t c = 0; c < clusters_.size(); ++c) {
       for (const Cell& own : clusters_[c].cells) {
-        for_cells_around(own, reach, [&](const Cell& cell) { marked.try_emplace(cell, c); });
+        for_cells_around(own, kRimCells, [&](const Cell& cell) { rim_.try_emplace(cell, c); });
       }
     }
   }
@@ -210,13 +208,13 @@ class Completion {
     if (judged == 0) return false;
     if (2 * evidence.through() >= judged) return true;
     const Height& height = heights_[wanted.cluster];
-    return wanted.near && 5 * evidence.through() >= judged && z_m >= height.low_m - kBeyond_m &&
+    return 10 * evidence.through() >= judged && z_m >= height.low_m - kBeyond_m &&
            z_m <= height.high_m + kBeyond_m;
   }
 
   std::vector<Cluster>& clusters_;
   std::vector<Height> heights_;
-  CellMap<std::uint32_t> near_, rim_;
+  CellMap<std::uint32_t> rim_;
   std::vector<Wanted> wanted_;
 };
 

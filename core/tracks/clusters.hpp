@@ -45,7 +45,8 @@ struct Cluster {
 /// Returns the clusters of a scan. What others proposed makes them, unless three looks hit it and
 /// none went through; so do points that nine of ten looks, four or more, went through, if eight of
 /// them lie together. Cells at most 0.6 m apart join. Points within 0.6 m complete a cluster if
-/// they were proposed, or if half of the looks went through, or within 0.4 m a fifth.
+/// they were proposed, or if half of the looks went through them, or a tenth if they are no more
+/// than 0.3 m above or below it.
 std::vector<Cluster> find_clusters(const LookedScan& scan, std::span<const Look> looks,
                                    ThreadPool& pool);
 

@@ -12,9 +12,9 @@ namespace mosbench::tracks {
 
 /// What a scan says of a place.
 enum class Sight : std::uint8_t {
-  kHidden,   ///< nothing: no ray there, or it ended before
+  kHidden,   ///< nothing: no ray there, or all ended before
   kThrough,  ///< all rays around it went on
-  kHit       ///< a ray ended there
+  kHit       ///< a ray ended there, or one nearer and one farther: a surface may be between
 };
 
 /// A direction as a pixel, and how far away it is.

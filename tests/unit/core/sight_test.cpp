@@ -33,6 +33,13 @@ TEST(Sight, TellsThroughHitAndHiddenApart) {
   EXPECT_EQ(image.at({5, 0, 5}), Sight::kHidden) << "nor there";
 }
 
+TEST(Sight, GoesNotThroughBesideWhatIsNearer) {
+  const std::vector<Point> points = {{8, 0.01F, 0.01F, 0}, {20, 0.2F, 0.01F, 0}};
+  const SightImage image(points, 0.5);
+  EXPECT_EQ(image.at({12, 0.1F, 0}), Sight::kHit) << "it may be a surface between the two";
+  EXPECT_EQ(image.at({12, 0.2F, 0}), Sight::kThrough);
+}
+
 TEST(Sight, LeavesOutWhatIsNearOrNoNumber) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();
