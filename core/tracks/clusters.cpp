@@ -38,11 +38,22 @@ std::vector<Look> some_of(std::span<const Look> looks) {
   return some;
 }
 
+/// Says whether some looks leave open that a point is_seen_through: a second hit does not.
+bool may_be_seen_through(const Eigen::Vector3f& point, std::span<const Look> some) {
+  int through = 0, hit = 0;
+  for (const Look& look : some) {
+    const Sight sight = look.at(point);
+    through += sight == Sight::kThrough ? 1 : 0;
+    hit += sight == Sight::kHit ? 1 : 0;
+    if (hit == 2) return false;
+  }
+  return through > 0;
+}
+
 Part part_of(const Eigen::Vector3f& point, bool proposed, std::span<const Look> looks,
              std::span<const Look> some, Evidence& evidence) {
   if (!proposed) {
-    const Evidence first = evidence_of(point, some);
-    if (first.through() == 0 || first.through() < first.hit()) return Part::kRest;
+    if (!may_be_seen_through(point, some)) return Part::kRest;
   }
   evidence = evidence_of(point, looks);
   if (proposed ? stands(evidence) : !is_seen_through(evidence)) return Part::kRest;

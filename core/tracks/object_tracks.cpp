@@ -120,7 +120,7 @@ void ObjectTracks::merge(const std::shared_ptr<Track>& track, const std::shared_
   if (part == all) return;
   all->sightings.insert(all->sightings.end(), part->sightings.begin(), part->sightings.end());
   all->last_scan = std::max(all->last_scan, part->last_scan);
-  part->sightings = {};
+  std::vector<Sighting>().swap(part->sightings);
   part->merged_into_ = all;
 }
 

@@ -21,6 +21,12 @@ std::vector<std::uint32_t> offsets_of(const ScanPeriod& period) {
   return offsets;
 }
 
+/// Assigning {} would keep the memory.
+template <typename Value>
+void release_memory(std::vector<Value>& values) {
+  std::vector<Value>().swap(values);
+}
+
 }  // namespace
 
 ScanPeriod::ScanPeriod(const std::vector<std::int64_t>& stamps_ns) {
@@ -128,11 +134,11 @@ void WholeTracks::look_at_next() {
   }
   const StageClock clock(record, "tracks");
   current.tracks = tracks_.enter(scan, current.clusters);
-  current.seen.points_m = {};
-  current.proposed = {};
-  for (Cluster& cluster : current.clusters) cluster.cells = {};
+  release_memory(current.seen.points_m);
+  release_memory(current.proposed);
+  for (Cluster& cluster : current.clusters) release_memory(cluster.cells);
   const std::uint32_t reach = offsets_.back();
-  if (scan >= first_held_ + reach) held(scan - reach).seen.image = {};
+  if (scan >= first_held_ + reach) held(scan - reach).seen.image = SightImage();
 }
 
 bool WholeTracks::is_due(const HeldScan& front) const {

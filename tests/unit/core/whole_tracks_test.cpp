@@ -136,6 +136,25 @@ TEST(WholeTracks, LabelWhatHasEndedBeforeTheirWindow) {
   EXPECT_LE(most, 62U) << "3 s that look ahead, 3 s that look back";
 }
 
+TEST(WholeTracks, KeepOfLookedAtScansOnlyTheirClusters) {
+  constexpr std::size_t kPoints = 5000;
+  auto told = std::make_unique<ToldMethod>();
+  for (int k = 0; k < 160; ++k) told->labels.emplace_back(kPoints, kMovingLabel);
+  WholeTracks method(kConfig, std::move(told), {});
+  std::vector<Point> points(kPoints, {20, 0, 0, 0});
+  std::size_t early = 0;
+  for (int k = 0; k < 160; ++k) {
+    // A point that keeps a track open, before and beside a wall.
+    const float y = k % 20 < 10 ? 0.3F : -0.3F;
+    points[0] = {5, y, 0, 0};
+    points[1] = {20, -4 * y, 0, 0};
+    method.push(points, Pose::Identity());
+    if (k == 80) early = method.memory()->bytes;
+  }
+  EXPECT_EQ(method.held_scans(), 160U);
+  EXPECT_LT(method.memory()->bytes, early + 80 * kPoints) << "not a byte per point";
+}
+
 /// A track of sightings with 10 points each, 0.1 s apart.
 struct Path {
   int scans = 10;
