@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kSpeed_m_s = 10, kMostStep_m = 2;
 constexpr double kShift_m = 1.5, kSoftShift_m = 0.5;
+constexpr double kBeyondAnyVehicle_m = 10;  // what comes into view shifts by its own length at most
 constexpr double kShort_s = 0.5;
 
 double share(std::uint32_t part, std::uint32_t all) {
@@ -64,8 +65,9 @@ bool moves(std::span<const Sighting> sightings, double period_s) {
   const auto hardly = [&](double through, std::uint32_t judged) {
     return through < 0.1 && 10.0 * judged >= 3.0 * seen.points;
   };
-  if (hardly(before, seen.judged_before) || hardly(after, seen.judged_after)) return false;
   const double most = std::max(before, after), gone_m = shift_m(sightings);
+  if (gone_m >= kBeyondAnyVehicle_m && most >= 0.5) return true;
+  if (hardly(before, seen.judged_before) || hardly(after, seen.judged_after)) return false;
   if (gone_m >= kShift_m && most >= 0.2) return true;
   if (share(seen.looks_through, seen.looks) < 0.5) return false;
   const std::size_t scans = scans_of(sightings);

@@ -22,7 +22,8 @@ struct Sighting {
 /// and a fifth of its points were seen through by earlier or by later scans; or half of all looks
 /// went through it, and it went 0.5 m with half of its points seen through, or was seen for less
 /// than 0.5 s with three tenths. It stands if the scans on one side judged three tenths of its
-/// points, and hardly any was seen through.
+/// points, and hardly any was seen through, unless it went 10 m: a car ahead hides where it will
+/// be.
 bool moves(std::span<const Sighting> sightings, double period_s);
 
 /// An object over time.

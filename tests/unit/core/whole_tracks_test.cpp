@@ -191,6 +191,8 @@ TEST(TrackDecision, RefusesWhatStandsOnOneSide) {
   EXPECT_FALSE(moves_along({.step_m = 0.2F, .through_after = 0}));
   EXPECT_FALSE(moves_along({.step_m = 0.2F, .through_before = 0}));
   EXPECT_TRUE(moves_along({.step_m = 0.2F, .through_before = 0, .judged_before = 2}));
+  EXPECT_TRUE(moves_along({.scans = 60, .step_m = 0.2F, .through_before = 0})) << "a car ahead";
+  EXPECT_FALSE(moves_along({.scans = 60, .step_m = 0.1F, .through_before = 0}));
 }
 
 TEST(TrackDecision, TakesWhatWasSeenShortly) {
