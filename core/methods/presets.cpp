@@ -52,6 +52,10 @@ std::span<const MethodPreset> method_presets() {
       {"kitti-tracking", settings(0.25, 1.5, 50.0), "ours, the authors publish none: as helimos"},
       {"recording", settings(0.25, 1.5, 50.0), "ours, for recordings of any sensor: as helimos"},
       {"best", {}, "ours, docs/history/plus/README.md", "hmm-mos-plus"},
+      {"offline",
+       {{"delay_scans", 0}, {"track_window_s", 60.0}},
+       "ours, docs/history/plus/README.md",
+       "hmm-mos-plus"},
   };
   return kPresets;
 }

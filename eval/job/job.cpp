@@ -15,6 +15,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/exec/exec_method.hpp"
+#include "eval/job/setting_changes.hpp"
 #include "eval/job/tuned_preset.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/reading_json.hpp"
@@ -83,63 +84,6 @@ std::vector<SettingChange> changes_of(const OdometryChoice& choice) {
   return changes;
 }
 
-/// Settings while their words are read, one after the other.
-class ChangeReader {
- public:
-  explicit ChangeReader(const MethodKind& method) : method_(method), settings_(method.defaults) {}
-
-  void read_file(const std::filesystem::path& file) {
-    for (const std::string& name : apply_settings_file(file, settings_)) keep(name);
-  }
-
-  void read_assignment(const std::string& assignment) {
-    apply_setting_assignment(assignment, settings_);
-    keep(assignment.substr(0, assignment.find('=')));
-  }
-
-  /// moving=now, ever or ever:SECONDS: a short word of the methods that have it.
-  void read_word(std::string_view name, const std::string& text) {
-    const auto word_of = [&](const MethodKind& kind) {
-      const auto found = std::ranges::find(kind.words, name, &SettingWord::name);
-      return found == kind.words.end() ? nullptr : &*found;
-    };
-    const MethodKind& owner =
-        word_of(method_) != nullptr ? method_ : *std::ranges::find_if(methods(), word_of);
-    const SettingWord& word = *word_of(owner);
-    if (text == word.usual) return;
-    const std::string with_number = fmt::format("{}:", word.value);
-    const bool has_number =
-        text.starts_with(with_number) && parse_double(text.substr(with_number.size())).has_value();
-    if (text != word.value && !has_number) {
-      throw UsageError(fmt::format("{}: '{}' is not known, expected {}, {} or {}{}", name, text,
-                                   word.usual, word.value, with_number, word.number));
-    }
-    if (&owner != &method_) {
-      throw UsageError(fmt::format("{}={}: method {} {}, expected {}", name, text, method_.name,
-                                   word.lacking, owner.name));
-    }
-    for (const std::string_view taking : word.takes) {
-      const std::string number =
-          has_number ? text.substr(with_number.size()) : to_string(settings_.find(taking)->highest);
-      read_assignment(fmt::format("{}={}", taking, number));
-    }
-    for (const PresetValue& set : word.sets) {
-      settings_.set(set.setting, set.value);
-      keep(set.setting);
-    }
-  }
-
-  std::vector<SettingChange> changes;
-
- private:
-  void keep(std::string_view name) {
-    changes.push_back({std::string(name), settings_.find(name)->value});
-  }
-
-  const MethodKind& method_;
-  Settings settings_;
-};
-
 /// The method with the settings that a study chose.
 Segment tuned_segment(const std::filesystem::path& file, const std::optional<std::string>& method) {
   const auto tuned = std::make_shared<const TunedPreset>(read_tuned_preset(file));
@@ -167,7 +111,7 @@ Segment segment_of(const JobWords& words) {
   if (words.config_file) reader.read_file(*words.config_file);
   reader.read_word("moving", words.moving);
   for (const std::string& assignment : words.assignments) reader.read_assignment(assignment);
-  std::ranges::move(reader.changes, std::back_inserter(segment.changes));
+  std::ranges::move(reader.take(), std::back_inserter(segment.changes));
   if (words.moving != "now") segment.label += words.moving;
   std::ranges::replace(segment.label, ':', '-');
   return segment;
@@ -357,7 +301,10 @@ Job job_of(const JobWords& words) {
 SettingChange change_of(const std::string& assignment, const MethodKind& method) {
   ChangeReader reader(method);
   reader.read_assignment(assignment);
-  return reader.changes.front();
+  const std::vector<SettingChange> changes = reader.take();
+  if (changes.size() == 1) return changes.front();
+  throw UsageError(
+      fmt::format("--set {}: stands for {}, expected one setting", assignment, to_words(changes)));
 }
 
 std::optional<DatasetKind> dataset_kind_option(const std::string& name) {

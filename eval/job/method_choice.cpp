@@ -86,7 +86,9 @@ Settings settings_of(const Preset& preset, const MethodKind& method) {
 Preset preset_for(const Preset& preset, DatasetKind kind) {
   if (preset.kind) return preset;
   const Preset& usual = default_preset(kind);
-  return {{preset.name, usual.values, preset.source, preset.method}, usual.kind, usual.protocol};
+  std::vector<PresetValue> values = usual.values;
+  values.insert(values.end(), preset.values.begin(), preset.values.end());
+  return {{preset.name, values, preset.source, preset.method}, usual.kind, usual.protocol};
 }
 
 const Preset& default_preset(DatasetKind kind) {
@@ -205,8 +207,9 @@ std::optional<OdometryChoice> named_odometry(const OdometryOptions& odometry,
 }
 
 MovingFilter moving_filter(const MethodKind& method, Settings settings) {
-  if (settings.find(common_settings::kDelay_scans) != nullptr) {
-    settings.set(common_settings::kDelay_scans, 0);
+  for (const std::string_view late :
+       {common_settings::kDelay_scans, common_settings::kTrackWindow_s}) {
+    if (settings.find(late) != nullptr) settings.set(late, 0);
   }
   try {
     method.check(settings);

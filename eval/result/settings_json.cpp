@@ -182,7 +182,11 @@ std::string describe_settings(const RecordedSettings& settings, std::string_view
   }
   if (has(common_settings::kDelay_scans)) {
     const auto delay_scans = static_cast<int>(number(common_settings::kDelay_scans));
-    parts.push_back(delay_scans == 0 ? "online" : "delayed by " + counted(delay_scans, "scan"));
+    const double window_s =
+        has(common_settings::kTrackWindow_s) ? number(common_settings::kTrackWindow_s) : 0;
+    parts.push_back(window_s > 0       ? fmt::format("whole tracks within {:g} s", window_s)
+                    : delay_scans == 0 ? "online"
+                                       : "delayed by " + counted(delay_scans, "scan"));
   }
   for (const auto& [name, value] : settings.all()) {
     if (said.contains(name)) continue;

@@ -23,10 +23,13 @@ MAY_INCLUDE = {
     "core/voxel": {"core/include", "core/base"},
     # Signed distances around the sensor, for the methods that judge by them.
     "core/tsdf": {"core/include", "core/base", "core/voxel"},
+    # Whole object tracks, for the methods that offer a delay of all scans.
+    "core/tracks": {"core/include", "core/base"},
+    "core/methods/hmm_mos": {"core/include", "core/base", "core/voxel", "core/tracks"},
     "core/methods/dynablox": {"core/include", "core/base", "core/voxel", "core/tsdf"},
     "core/methods/lc_free_space": {"core/include", "core/base", "core/voxel", "core/tsdf"},
     # Stands on the map of the paper's method.
-    "core/methods/hmm_mos_plus": {"core/include", "core/base", "core/voxel", "core/methods/hmm_mos"},
+    "core/methods/hmm_mos_plus": {"core/include", "core/base", "core/voxel", "core/tracks", "core/methods/hmm_mos"},
     # The table of all methods.
     "core/methods": {"core/"},
     "datasets/text": {"core/include"},

@@ -62,6 +62,7 @@ inline constexpr std::string_view kVoxelSize_m = "voxel_size_m";  ///< edge of a
 inline constexpr std::string_view kMinRange_m = "min_range_m";    ///< nearer points never move
 inline constexpr std::string_view kMaxRange_m = "max_range_m";    ///< farther points never move
 inline constexpr std::string_view kDelay_scans = "delay_scans";   ///< labels come so much later
+inline constexpr std::string_view kTrackWindow_s = "track_window_s";  ///< whole tracks are judged
 }  // namespace common_settings
 
 /// Returns "0.1 to 1000", or "paper-2024 or release-2025".

@@ -23,6 +23,7 @@ struct Config {
   double min_range_m = 0.5;                 ///< points at or nearer than this never take part
   double max_range_m = 20.0;                ///< voxels farther than this are not observed
   int delay_scans = 0;                      ///< n; 0 is online, as release-2025 always is
+  double track_window_s = 0;                ///< of whole tracks; 0: points are judged by their past
   int local_window_scans = 3;               ///< w_l
   int global_window_scans = 300;            ///< w_g
   int dynamic_window_scans = 100;           ///< w_d, paper-2024 only
@@ -34,6 +35,9 @@ struct Config {
 
   double sigma_m() const { return occupancy_sigma_m.value_or(voxel_size_m); }
 };
+
+/// The settings of the map, of which it is a part in other methods.
+inline Config& map_of(Config& config) { return config; }
 
 /// The one list of fields, as fields.hpp describes it.
 template <typename AnyConfig, typename Visitor>
@@ -49,6 +53,9 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
         "voxels farther than this are not observed");
   visit("delay_scans", config.delay_scans, FieldRange{0, 1000},
         "n, labels are decided this many scans later; 0 is online");
+  visit("track_window_s", config.track_window_s, FieldRange{0.0, 3600.0},
+        "whole object tracks are judged, labels come up to this much later; 0: not; stands for "
+        "delay_scans, --set delay=all");
   visit("local_window_scans", config.local_window_scans, FieldRange{1, 1000},
         "w_l, scans whose votes are added up");
   visit("global_window_scans", config.global_window_scans, FieldRange{1, 30000},
@@ -69,7 +76,7 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
 
 /// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field
 /// outside its range, an even kernel width, range limits that leave nothing, a range or sigma of
-/// too many voxels, and a delay in release-2025.
+/// too many voxels, a window of tracks below 1 s or beside a delay, and either in release-2025.
 void check(const Config& config);
 
 }  // namespace mosbench::hmm_mos

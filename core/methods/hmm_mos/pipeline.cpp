@@ -8,6 +8,7 @@
 #include "core/methods/hmm_mos/hmm.hpp"
 #include "core/methods/hmm_mos/median.hpp"
 #include "core/methods/hmm_mos/otsu.hpp"
+#include "core/tracks/judged_by_tracks.hpp"
 #include "core/voxel/distance_field.hpp"
 #include "core/voxel/neighbourhood.hpp"
 #include "core/voxel/raycast.hpp"
@@ -22,7 +23,13 @@ constexpr std::string_view kScoreName = "dynamic score";
 constexpr std::string_view kThresholdName = "Otsu threshold";
 
 std::unique_ptr<Method> make_slow(const Settings& settings, const RunContext& context) {
-  return make_reference(config_of<Config>(settings), context);
+  return tracks::make_by<Config>(settings, context, make_reference);
+}
+
+std::unique_ptr<Method> make_fast(const Settings& settings, const RunContext& context) {
+  return tracks::make_by<Config>(settings, context, [](const Config& config, const RunContext& in) {
+    return std::make_unique<Pipeline>(config, in);
+  });
 }
 
 }  // namespace
@@ -178,9 +185,13 @@ void check(const Config& config) {
       likelihood_reach_sigmas(config.transition_epsilon, config.min_state_probability);
   check_voxels("occupancy_sigma_m", config.sigma_m() / config.voxel_size_m, "voxel_size_m",
                kMaxDistanceRadius / reach_per_sigma);
-  if (config.variant == Variant::kRelease2025 && config.delay_scans != 0) {
-    throw std::invalid_argument("delay_scans: " + std::to_string(config.delay_scans) +
-                                " in release-2025, which has no delay, expected 0");
+  tracks::check_window(config.track_window_s, config.delay_scans);
+  if (config.variant == Variant::kRelease2025 &&
+      (config.delay_scans != 0 || config.track_window_s > 0)) {
+    const bool delays = config.delay_scans != 0;
+    throw std::invalid_argument(
+        (delays ? "delay_scans: " + std::to_string(config.delay_scans) : "track_window_s: is set") +
+        " in release-2025, which has no delay, expected 0");
   }
 }
 
@@ -193,7 +204,7 @@ MethodKind method_kind() {
               "a three-state hidden Markov model per voxel, changes convolved over space and time",
           .defaults = settings_of(Config{}),
           .check = check_settings<Config>,
-          .make = make_method<Pipeline, Config>,
+          .make = make_fast,
           .score_name = kScoreName,
           .threshold_name = kThresholdName,
           .is_named_by_variant = true};

@@ -12,10 +12,10 @@
 namespace mosbench::hmm_mos_plus {
 
 /// The settings of the paper's method that this one has, too: those of its map.
-inline constexpr std::array<std::string_view, 9> kMapSettings = {
-    "voxel_size_m",          "occupancy_sigma_m",  "min_range_m",
-    "max_range_m",           "delay_scans",        "global_window_scans",
-    "min_state_probability", "transition_epsilon", "distance_field_scans"};
+inline constexpr std::array<std::string_view, 10> kMapSettings = {
+    "voxel_size_m",       "occupancy_sigma_m",   "min_range_m",         "max_range_m",
+    "delay_scans",        "track_window_s",      "global_window_scans", "min_state_probability",
+    "transition_epsilon", "distance_field_scans"};
 
 /// Of the cube around a seed in which voxels should be known.
 inline constexpr int kKnownRadius = 2;
@@ -51,6 +51,9 @@ struct Config {
   double max_height_m = 4.5;
   int min_track_steps = 1;
 };
+
+/// The settings that it shares with the paper's method.
+inline hmm_mos::Config& map_of(Config& config) { return config.map; }
 
 /// The one list of fields, as fields.hpp describes it.
 template <typename AnyConfig, typename Visitor>

@@ -66,7 +66,18 @@ TEST(Config, LimitsAreClosedAndComplaintsNameTheKey) {
       }
     }
   });
-  EXPECT_EQ(fields, 14U);
+  EXPECT_EQ(fields, 15U);
+}
+
+TEST(Config, HasAWindowOfTracksOfASecondOrMoreInsteadOfADelay) {
+  Config config;
+  config.track_window_s = 0.5;
+  EXPECT_EQ(complaint_about(config), "track_window_s: is less than 1 s, expected 0 or 1 to 3600");
+  config.track_window_s = 1;
+  EXPECT_EQ(complaint_about(config), "");
+  config.delay_scans = 1;
+  EXPECT_EQ(complaint_about(config),
+            "delay_scans: is set beside track_window_s, expected 0 of one of them");
 }
 
 TEST(Config, RefusesNumbersThatAreNone) {
