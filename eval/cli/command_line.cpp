@@ -136,7 +136,7 @@ Printed printed(const Answer& answer, const std::string& asked, std::size_t colu
     result.bytes += '\n';
     return result;
   }
-  if (!answer.failure.empty()) tell("mosbench: " + answer.failure);
+  result.failure = answer.failure;
   if (!answer.failure.empty() && format == Format::kText) return result;
   result.bytes = render(answer, format, columns);
   // Names in it may come from files of strangers.

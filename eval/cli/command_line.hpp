@@ -6,11 +6,15 @@
 
 namespace mosbench {
 
+/// How the program ends after an error: of the call, of what it reads or writes, or its own.
+enum ExitCode { kUsage = 2, kUnusable = 3, kInternal = 70 };
+
 /// What the program writes to stdout, and its exit code.
 struct Printed {
   std::string bytes;
   int exit_code;
-  bool is_text;  ///< for people, who may see it in colours
+  bool is_text;           ///< for people, who may see it in colours
+  std::string failure{};  ///< why nothing was found out; stderr says it, Python raises it
 };
 
 /// Parses the arguments that follow the program's name, runs the command they name and formats its

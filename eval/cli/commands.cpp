@@ -7,13 +7,9 @@
 #include <system_error>
 
 #include "datasets/text/errors.hpp"
+#include "eval/cli/command_line.hpp"
 
 namespace mosbench {
-namespace {
-
-enum ExitCode { kUsage = 2, kUnusable = 3, kInternal = 70 };
-
-}  // namespace
 
 std::span<const Command> commands() {
   static constexpr std::array kCommands = {

@@ -39,6 +39,7 @@ int main(int argc, char** argv) {
     const mosbench::Printed printed =
         mosbench::answer_to({argv + 1, argv + argc}, mosbench::terminal_columns());
     const bool coloured = printed.is_text && mosbench::shows_colours(STDOUT_FILENO);
+    if (!printed.failure.empty()) mosbench::tell("mosbench: " + printed.failure);
     mosbench::write_stdout(coloured ? mosbench::in_colours(printed.bytes) : printed.bytes);
     return printed.exit_code;
   } catch (...) {

@@ -26,6 +26,10 @@ std::pair<int, std::string> command(const std::vector<std::string>& arguments, b
   const std::lock_guard lock(one_at_a_time);
   const CallerScope scope({.quiet = quiet, .at_each_scan = handle_signals});
   const Printed printed = answer_to(arguments, 0);
+  if (!printed.failure.empty()) {
+    if (printed.exit_code == kUsage) throw UsageError(printed.failure);
+    throw DataError(printed.failure);
+  }
   return {printed.exit_code, printed.bytes};
 }
 
