@@ -198,9 +198,4 @@ std::optional<MemoryUse> WholeTracks::memory() const {
   return use;
 }
 
-std::vector<std::string> WholeTracks::remarks() const {
-  if (!context().stamps_ns.empty()) return {};
-  return {"scans have no stamps: seconds are counted as at 10 Hz"};
-}
-
 }  // namespace mosbench::tracks

@@ -53,7 +53,6 @@ class WholeTracks final : public ScanMethod<SeenScan> {
               const RunContext& context);
 
   std::optional<MemoryUse> memory() const override;
-  std::vector<std::string> remarks() const override;
 
   /// Scans whose ranges, points or clusters are held, whichever are more.
   std::size_t held_scans() const { return held_.size(); }

@@ -14,9 +14,12 @@
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/label_file.hpp"
 #include "datasets/sequence/fingerprint.hpp"
+#include "datasets/sequence/stamps.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/numbers.hpp"
+#include "eval/engine/window_remark.hpp"
 #include "eval/exec/child_process.hpp"
+#include "eval/exec/exec_method.hpp"
 #include "eval/exec/pipe_messages.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/result_scans.hpp"
@@ -112,6 +115,7 @@ class SequenceRun {
     found_.from.fingerprint = fingerprint_.hex();
     found_.from.fingerprint_without_poses = fingerprint_without_poses_.hex();
     found_.remarks = method_->remarks();
+    add_window_remark();
     if (auto doubt = sweeps_.doubt()) found_.doubts.push_back(std::move(*doubt));
     timing_.wall_s = milliseconds_since(start) / 1e3;
     found_.timing = std::move(timing_);
@@ -119,6 +123,14 @@ class SequenceRun {
   }
 
  private:
+  /// A program of the user's names its settings as it likes.
+  void add_window_remark() {
+    if (settings_.method->name == kExecKind) return;
+    const auto step_s = usual_step_s(sequence_.recording().scans);
+    std::string remark = window_remark(settings_.method_settings, step_s);
+    if (!remark.empty()) found_.remarks.push_back(std::move(remark));
+  }
+
   std::future<ReadyScan> prepare(std::size_t scan_index) {
     // One scan at a time, so the fingerprints see the frames in order.
     return std::async(launch_, [this, scan_index, frame = std::move(spent_)]() mutable {

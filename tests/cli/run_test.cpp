@@ -37,6 +37,18 @@ class Run : public testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(Run, SaysWhatWindowsInScansMeanHere) {
+  std::string times;
+  for (std::size_t k = 0; k < kScansOfRun; ++k)
+    times += std::to_string(0.05 * static_cast<double>(k)) + '\n';
+  folder_.write("room/times.txt", times);
+  const cli::Answer answer = cli::run(command("out"));
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("scans come every 0.05 s, not every 0.1 s: "
+                                    "local_window_scans=3 lasts 0.15 s"));
+  EXPECT_THAT(result("out").at("remarks").dump(), HasSubstr("not every 0.1 s"));
+}
+
 TEST_F(Run, WritesOneLabelPerPointNamedLikeTheScan) {
   const cli::Answer answer = cli::run(command("out"));
   ASSERT_EQ(answer.exit_code, 0) << answer.err;

@@ -1,12 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <mosbench/method.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "datasets/text/errors.hpp"
 #include "eval/answer/render.hpp"
+#include "eval/engine/window_remark.hpp"
 #include "eval/result/reading_json.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/store/store.hpp"
@@ -27,6 +29,23 @@ TEST(ChangedMembers, NameWhatDiffersOnEitherSide) {
   const nlohmann::ordered_json empty = nlohmann::ordered_json::object();
   EXPECT_EQ(changed_members(empty, empty), "");
   EXPECT_EQ(changed_members(empty, {{"a", 1}}), "a is nothing there and 1 now");
+}
+
+TEST(WindowRemark, SaysHowLongWindowsInScansLastHere) {
+  const Settings plain = find_method("hmm-mos")->defaults;
+  EXPECT_EQ(window_remark(plain, 0.1), "");
+  EXPECT_EQ(window_remark(plain, 0.119), "") << "a sweep that wavers";
+  EXPECT_EQ(window_remark(plain, std::nullopt), "") << "no window of it is in seconds";
+  EXPECT_EQ(window_remark(plain, 0.2),
+            "scans come every 0.2 s, not every 0.1 s: local_window_scans=3 lasts 0.6 s, "
+            "global_window_scans=300 lasts 60 s, dynamic_window_scans=100 lasts 20 s, "
+            "distance_field_scans=2 lasts 0.4 s");
+  const Settings plus = find_method("hmm-mos-plus")->defaults;
+  EXPECT_EQ(window_remark(plus, std::nullopt),
+            "scans have no stamps: seed_age_s, object_age_s, fresh_age_s are counted as at 10 Hz");
+  EXPECT_EQ(window_remark(plus, 0.05),
+            "scans come every 0.05 s, not every 0.1 s: global_window_scans=300 lasts 15 s, "
+            "seed_age_s, object_age_s, fresh_age_s by the stamps");
 }
 
 TEST(ReadingJson, KeepsWhatTheUserTold) {
