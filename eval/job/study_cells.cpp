@@ -274,24 +274,37 @@ std::string missing_keys(const Study& study, const std::vector<RuledCells>& grou
       study.file.string(), rules, missing_keys(study, groups)));
 }
 
-/// Refuses copies, parts and other layouts of what is tuned on. One simulation may write several
-/// sequences, which are others.
+/// Whether two parts of a drive share no scan.
+bool are_apart(const StudyCell& first, const StudyCell& second) {
+  const ScanRange one = first.job.data.reading.scans.value_or(ScanRange{});
+  const ScanRange other = second.job.data.reading.scans.value_or(ScanRange{});
+  return (one.to && *one.to <= other.from) || (other.to && *other.to <= one.from);
+}
+
+/// Whether two cells may read the same scans. One simulation may write several sequences, which are
+/// others.
+bool may_share_scans(const StudyCell& first, const StudyCell& second) {
+  if (first.drive.empty() || first.drive != second.drive) return false;
+  const bool are_siblings = first.data == second.data && first.drive.starts_with(kOfScene);
+  return !are_siblings && !are_apart(first, second);
+}
+
+/// Refuses copies and other layouts of what is tuned on; other scans of a drive may be judged.
 void check_drives(const Study& study, const std::vector<StudyCell>& cells) {
-  std::map<std::string, const StudyCell*> tuned;
+  std::vector<const StudyCell*> tuned, judged;
   for (const StudyCell& cell : cells) {
-    if (!cell.drive.empty() && names_sequence(study.tuning->tune_on, cell)) {
-      tuned.emplace(cell.drive, &cell);
-    }
+    if (cell.axis != nullptr) continue;
+    if (names_sequence(study.tuning->tune_on, cell)) tuned.push_back(&cell);
+    if (names_sequence(study.tuning->judge_on, cell)) judged.push_back(&cell);
   }
-  for (const StudyCell& cell : cells) {
-    const auto same = tuned.find(cell.drive);
-    if (same == tuned.end() || !names_sequence(study.tuning->judge_on, cell)) continue;
-    if (cell.data == same->second->data && cell.drive.starts_with(kOfScene)) continue;
-    throw UsageError(
-        fmt::format("{}: best_of tunes on \"{}\" and judges on \"{}\", which are the same drive, "
-                    "expected others "
-                    "in judge_on",
-                    study.file.string(), same->second->sequence_label(), cell.sequence_label()));
+  for (const StudyCell* one : tuned) {
+    for (const StudyCell* other : judged) {
+      if (!may_share_scans(*one, *other)) continue;
+      throw UsageError(
+          fmt::format("{}: best_of tunes on \"{}\" and judges on \"{}\", which are the same drive, "
+                      "expected other sequences, or other `scans` of it, in judge_on",
+                      study.file.string(), one->sequence_label(), other->sequence_label()));
+    }
   }
 }
 

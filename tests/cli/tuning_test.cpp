@@ -131,6 +131,24 @@ TEST_F(Tuning, RefusesToJudgeOnWhatItWasTunedOn) {
   EXPECT_THAT(refusal(simulated, "b"), HasSubstr("which are the same drive"));
 }
 
+TEST_F(Tuning, MayJudgeOnOtherScansOfADrive) {
+  const auto exit_code = [&](const std::string& judged) {
+    folder_.write("s.yaml", R"(name: tune
+protocol: semantickitti-mos
+methods: [underwood]
+grid: {max_range_m: [3, 40]}
+data:
+- {name: a, path: data, dataset: semantickitti, sequences: ["01"], reading: {scans: ":6"}}
+- {name: b, path: data, dataset: semantickitti, sequences: ["01"], reading: {scans: ")" +
+                                judged + R"("}}
+best_of: {metric: iou, tune_on: [a], judge_on: [b]}
+)");
+    return run({"rank", path("s.yaml"), "--out", path("out")}).exit_code;
+  };
+  EXPECT_EQ(exit_code("6:"), 1) << "cells are missing";
+  EXPECT_EQ(exit_code("5:"), 2);
+}
+
 TEST_F(Tuning, GivesAProgramItsSettings) {
   const std::string client = std::string(MOSBENCH_SOURCE_DIR) + "/tests/examples/exec/client.py";
   const std::string program = "exec:/usr/bin/python3 " + client;
