@@ -144,11 +144,12 @@ TEST_F(Run, RecordsTheEffectiveConfigurationWithTheKeysOfTheParityCases) {
   std::vector<std::string> keys;
   const auto json = result("out");
   for (const auto& [key, value] : json.at("settings").items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::ElementsAre(
-                        "variant", "voxel_size_m", "occupancy_sigma_m", "min_range_m",
-                        "max_range_m", "delay_scans", "local_window_scans", "global_window_scans",
-                        "kernel_width_voxels", "min_state_probability", "min_otsu_score",
-                        "transition_epsilon", "dynamic_window_scans", "distance_field_scans"));
+  EXPECT_THAT(
+      keys, testing::ElementsAre("variant", "voxel_size_m", "occupancy_sigma_m", "min_range_m",
+                                 "max_range_m", "delay_scans", "track_window_s",
+                                 "local_window_scans", "global_window_scans", "kernel_width_voxels",
+                                 "min_state_probability", "min_otsu_score", "transition_epsilon",
+                                 "dynamic_window_scans", "distance_field_scans"));
   EXPECT_EQ(json.at("settings").at("occupancy_sigma_m"), 0.3);
   EXPECT_EQ(json.at("settings").at("delay_scans"), 2);
   EXPECT_EQ(json.at("settings").at("variant"), "paper-2024");
