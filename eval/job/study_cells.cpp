@@ -12,6 +12,7 @@
 #include "datasets/simulator/simulate.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
+#include "eval/job/study_drives.hpp"
 #include "eval/protocols/protocol.hpp"
 #include "eval/result/reading_json.hpp"
 
@@ -39,37 +40,16 @@ std::string content_of(const Sequence& sequence) {
   return hash_of_text(listing);
 }
 
-constexpr std::string_view kOfScene = "scene ";
-
-/// "scene 5f3a... seed 7": one drive, whatever its layout and length.
-std::string simulated_drive(const std::string& scene_fingerprint, std::uint64_t seed) {
-  return fmt::format("{}{} seed {}", kOfScene, scene_fingerprint, seed);
-}
-
-/// What tells recorded scans from others: scans of one size may have other points.
-std::string drive_of(const Sequence& sequence, const std::string& content) {
-  if (const auto& origin = sequence.simulated()) {
-    return simulated_drive(origin->scene_fingerprint, origin->seed);
-  }
-  constexpr std::uintmax_t kMostBytes = 1U << 26U;
-  const std::vector<fs::path> files = sequence.files();
-  const bool is_scan = !files.empty() && size_of(files.front()) <= kMostBytes;
-  return content + (is_scan ? " " + hash_of_file(files.front()) : "");
-}
-
 /// What a cell has to say of a sequence on disk. One that cannot be opened says why.
-ordered_json sequence_json(const Data& data, const std::string& name, std::string& drive) {
+ordered_json sequence_json(const Data& data, const std::string& name) {
   try {
     Reading reading = data.reading;
     const bool refines = std::exchange(reading.refine_poses, false);  // which reads all scans
     const Dataset dataset = open_dataset(data.path, {data.kind, {name}, reading});
     if (reading.pose_file() != nullptr) reading.poses = OwnPoses{};
     reading.refine_poses = refines;
-    const Sequence& sequence = *dataset.sequences.front();
-    const std::string content = content_of(sequence);
-    drive = drive_of(sequence, content);
     return {{"dataset", to_string(dataset.kind)},
-            {"content", content},
+            {"content", content_of(*dataset.sequences.front())},
             {"reading", told_json(reading)}};
   } catch (const std::runtime_error& error) {  // DataError, or UsageError of what it lacks
     return {{"unreadable", error.what()}};
@@ -80,7 +60,7 @@ struct KnownSequence {
   DatasetKind kind;
   std::string name;
   ordered_json input;  ///< what its key says of it
-  std::string drive;   ///< see StudyCell; empty where it cannot be read
+  std::string drive;   ///< see StudyCell; empty where nobody asks, or it cannot be read
 };
 
 /// Throws UsageError for a sequence that the simulation does not write.
@@ -110,8 +90,7 @@ std::vector<KnownSequence> sequences_of(const StudyData& data) {
   const OpenOptions options{data.data.kind, data.data.sequences, data.data.reading};
   try {
     for (const SequenceFolder& folder : find_sequences(data.data.path, options, kind)) {
-      KnownSequence& known = sequences.emplace_back(KnownSequence{*kind, folder.name, {}, ""});
-      known.input = sequence_json(data.data, folder.name, known.drive);
+      sequences.push_back({*kind, folder.name, sequence_json(data.data, folder.name), ""});
     }
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", data.name, error.what()));
@@ -274,40 +253,6 @@ std::string missing_keys(const Study& study, const std::vector<RuledCells>& grou
       study.file.string(), rules, missing_keys(study, groups)));
 }
 
-/// Whether two parts of a drive share no scan.
-bool are_apart(const StudyCell& first, const StudyCell& second) {
-  const ScanRange one = first.job.data.reading.scans.value_or(ScanRange{});
-  const ScanRange other = second.job.data.reading.scans.value_or(ScanRange{});
-  return (one.to && *one.to <= other.from) || (other.to && *other.to <= one.from);
-}
-
-/// Whether two cells may read the same scans. One simulation may write several sequences, which are
-/// others.
-bool may_share_scans(const StudyCell& first, const StudyCell& second) {
-  if (first.drive.empty() || first.drive != second.drive) return false;
-  const bool are_siblings = first.data == second.data && first.drive.starts_with(kOfScene);
-  return !are_siblings && !are_apart(first, second);
-}
-
-/// Refuses copies and other layouts of what is tuned on; other scans of a drive may be judged.
-void check_drives(const Study& study, const std::vector<StudyCell>& cells) {
-  std::vector<const StudyCell*> tuned, judged;
-  for (const StudyCell& cell : cells) {
-    if (cell.axis != nullptr) continue;
-    if (names_sequence(study.tuning->tune_on, cell)) tuned.push_back(&cell);
-    if (names_sequence(study.tuning->judge_on, cell)) judged.push_back(&cell);
-  }
-  for (const StudyCell* one : tuned) {
-    for (const StudyCell* other : judged) {
-      if (!may_share_scans(*one, *other)) continue;
-      throw UsageError(
-          fmt::format("{}: best_of tunes on \"{}\" and judges on \"{}\", which are the same drive, "
-                      "expected other sequences, or other `scans` of it, in judge_on",
-                      study.file.string(), one->sequence_label(), other->sequence_label()));
-    }
-  }
-}
-
 /// Refuses names of no sequence, and sequences that are judged on which settings are chosen.
 void check_tuning(const Study& study, const std::vector<StudyCell>& cells) {
   std::vector<std::string> known;
@@ -370,7 +315,11 @@ std::vector<SettingChange> changes_of(const Segment& segment, const StudyAxis& a
 std::vector<StudyCell> cells_of(const Study& study) {
   CellLister lister(study);
   for (const StudyData& data : study.data) {
-    for (const KnownSequence& sequence : sequences_of(data)) {
+    for (KnownSequence& sequence : sequences_of(data)) {
+      const bool is_read = !sequence.input.contains("unreadable");
+      if (study.tuning && sequence.drive.empty() && is_read) {
+        sequence.drive = drive_of(data.data, sequence.name);
+      }
       for (const StudyMethod& method : study.methods) {
         for (const auto& odometry : study.odometries) {
           lister.list(data, sequence, method, odometry);
