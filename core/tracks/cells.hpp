@@ -32,9 +32,10 @@ struct CellHash {
 template <typename Value>
 using CellMap = std::unordered_map<Cell, Value, CellHash>;
 
-/// Calls `visit` for the cells at most `reach` away along x and y.
+/// Calls `visit` for the cells at most `reach` away along x and y. Takes the cell by value: `visit`
+/// may grow the list that it is from.
 template <typename Visit>
-void for_cells_around(const Cell& cell, int reach, Visit&& visit) {
+void for_cells_around(Cell cell, int reach, Visit&& visit) {
   for (int x = -reach; x <= reach; ++x) {
     for (int y = -reach; y <= reach; ++y) visit(Cell{cell.x + x, cell.y + y});
   }
