@@ -60,8 +60,10 @@ DataMark mark_in(const std::filesystem::path& folder) {
   const std::filesystem::path marker = folder / kDisturbedMarker;
   std::error_code ignored;
   const bool is_there = std::filesystem::is_regular_file(marker, ignored);
-  if (mark.disturbed.empty() && is_there)
-    mark.disturbed = parse_disturbed(read_file(marker), marker);
+  if (!mark.disturbed.empty() || !is_there) return mark;
+  // A file of this name that says nothing of it is the user's.
+  const std::string text = read_file(marker);
+  if (text.starts_with(kDisturbed)) mark.disturbed = parse_disturbed(text, marker);
   return mark;
 }
 

@@ -243,26 +243,6 @@ void clear_study(const fs::path& out) {
   for (const fs::path& folder : {out, out / "cells", out / "data"}) remove_abandoned(folder);
 }
 
-void drop_stale_cells(const StudyPlan& study) {
-  std::set<std::string_view> programs;
-  for (const StudyMethod& method : study.study->methods) {
-    if (method.segment.is_program()) programs.insert(method.segment.method->title);
-  }
-  if (programs.empty() || !is_there(study.out / "cells")) return;
-  std::size_t dropped = 0;
-  for (const auto& entry : fs::directory_iterator(study.out / "cells")) {
-    try {
-      if (!is_there(entry.path() / "result.json")) continue;
-      const Result result = read_result(entry.path() / "result.json");
-      if (!programs.contains(result.method) || !changed_program_file(result)) continue;
-      if (fs::remove_all(entry.path()) > 0) ++dropped;
-    } catch (const DataError&) {  // a damaged one is computed anew under its own name
-    }
-  }
-  if (dropped == 0) return;
-  tell(fmt::format("{} of a program that has changed since: dropped", counted(dropped, "cell")));
-}
-
 CellOutcome compute_cell(const PlannedCell& before, const fs::path& out, unsigned threads) {
   PlannedCell planned = before;
   look_up(planned, out);  // another cell may ask the same, another process may have been here

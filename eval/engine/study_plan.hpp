@@ -82,10 +82,6 @@ std::filesystem::path place_of(const std::filesystem::path& out, const Data& dat
 /// Removes what processes of this host that have ended left half-written in a study's folder.
 void clear_study(const std::filesystem::path& out);
 
-/// Removes results of the study's programs as they were before these changed: tables of the whole
-/// folder would refuse them, and the study computes them anew.
-void drop_stale_cells(const StudyPlan& study);
-
 /// What asking for a cell led to.
 enum class CellOutcome : std::uint8_t { kComputed, kKept, kFailed };
 

@@ -211,7 +211,6 @@ StudyWork work_of(const StudyPlan& plan, const CostModel& costs) {
 
 void run_here(const StudyPlan& plan, unsigned threads) {
   clear_study(plan.out);
-  drop_stale_cells(plan);
   const StudyWork work = work_of(plan, {});
   keep_freed_memory();
   for (std::size_t i = 0; i < work.cells.size(); ++i) {
@@ -224,7 +223,6 @@ int run_engine(const StudyPlan& plan, const CostModel& costs, const EngineOption
   const fs::path out = fs::absolute(plan.out);
   const StudyWork work = work_of(plan, costs);
   clear_study(plan.out);
-  drop_stale_cells(plan);
   if (work.cells.empty()) return 0;
   std::set<const StudyData*> made;
   for (const PlannedCell* planned : work.cells) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <cstdlib>
 #include <iomanip>
@@ -192,13 +193,21 @@ std::string key_of(const ordered_json& identity) { return hash_of_text(identity.
 
 namespace {
 
-/// Whether a word of a comment is the name of a file, not one of a sentence: "weights.pt", "net/w".
+/// Returns a word of a comment without the marks around it: "(weights.pt)," is weights.pt.
+std::string bare(const std::string& word) {
+  const std::size_t first = word.find_first_not_of("#(["), last = word.find_last_not_of(",;:)]");
+  return first == word.npos || last == word.npos || last < first
+             ? ""
+             : word.substr(first, last + 1 - first);
+}
+
+/// Whether it is the name of a file, not a word of a sentence: by an extension of two letters.
 bool names_file(std::string_view word) {
-  if (word.find("://") != word.npos || word.ends_with('.')) return false;
-  const std::size_t dot = word.rfind('.');
-  const bool has_extension = dot != word.npos && dot > 0 && dot + 1 < word.size() &&
-                             std::isalpha(static_cast<unsigned char>(word[dot + 1])) != 0;
-  return has_extension || word.find('/') != word.npos;
+  if (word.find("://") != word.npos) return false;
+  const std::string extension = fs::path(word).extension().string();
+  return extension.size() > 2 && std::ranges::all_of(extension.substr(1), [](unsigned char c) {
+           return std::isalpha(c) != 0;
+         });
 }
 
 }  // namespace
@@ -215,8 +224,9 @@ std::vector<ProgramFile> files_of_program(const MethodKind& method) {
       command >> std::quoted(word, quote);
     } else {
       command >> word;
+      in_comment = in_comment || word.starts_with('#');
     }
-    in_comment = in_comment || word.starts_with('#');
+    if (in_comment) word = bare(word);
     fs::path file = is_first ? found_by_path(word) : fs::path(word);
     std::error_code ignored;
     if (in_comment && names_file(word) && !fs::exists(file, ignored)) {

@@ -331,11 +331,10 @@ NumpyKind shared_kind(const Files& files, const std::vector<std::size_t>& wanted
   return shared.value_or(NumpyKind::kReals);
 }
 
-/// Returns the id map when the files hold class numbers instead of label ids.
-std::optional<LabelIdMap> guess_id_map(const std::vector<PredictedId>& ids, Format format,
+/// Returns the id map when the files hold class numbers instead of label ids. Ids 0 and 1 alone may
+/// be flags, or the classes of a network that found nothing moving: nobody guesses which.
+std::optional<LabelIdMap> guess_id_map(const std::vector<PredictedId>& ids,
                                        const fs::path& folder) {
-  static const LabelIdMap kFlags = {{0, kStaticLabel}, {1, kMovingLabel}};
-  if (format == Format::kNpy && !ids.empty() && ids.back().id <= 1) return kFlags;
   if (ids.empty() || ids.back().id > 2 || ids.back().id == 0) return std::nullopt;
   if (ids.back().id == 2) return kLearningIds;
   throw DataError(folder, "holds no other ids than 0 and 1",
@@ -378,11 +377,10 @@ std::unique_ptr<Predictions> open_scan_files(const PredictionPlace& place, const
     check_mapped(ids, *options.id_map);
     labels->set_id_map(*options.id_map);
   } else if (has_ids) {
-    if (const auto guessed = guess_id_map(ids, place.format, place.path)) {
+    if (const auto guessed = guess_id_map(ids, place.path)) {
       labels->set_id_map(*guessed);
-      remarks.push_back(fmt::format("{} taken for a network's classes: {}",
-                                    guessed->size() == 2 ? "ids 0 and 1" : "ids 0, 1 and 2",
-                                    id_map_text(*guessed)));
+      remarks.push_back(
+          fmt::format("ids 0, 1 and 2 taken for a network's classes: {}", id_map_text(*guessed)));
     }
   }
   labels->set_ids(std::move(ids));

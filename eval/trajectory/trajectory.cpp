@@ -35,7 +35,11 @@ constexpr const char* kExpected =
 /// The mark of a run that found poses, or of the sequence beside whose scans they lie.
 DataMark mark_of_poses(const fs::path& file) {
   const fs::path result = file.parent_path() / "result.json";
-  return is_there(result) ? mark_of(read_result(result)) : mark_of_file(file, 0);
+  try {
+    if (is_there(result)) return mark_of(read_result(result));
+  } catch (const DataError&) {  // of another program
+  }
+  return mark_of_file(file, 0);
 }
 
 PosePath path_of_file(std::string name, const fs::path& file, std::optional<PoseFormat> format) {
