@@ -52,9 +52,7 @@ bool may_be_seen_through(const Eigen::Vector3f& point, std::span<const Look> som
 
 Part part_of(const Eigen::Vector3f& point, bool proposed, std::span<const Look> looks,
              std::span<const Look> some, Evidence& evidence) {
-  if (!proposed) {
-    if (!may_be_seen_through(point, some)) return Part::kRest;
-  }
+  if (!proposed && !may_be_seen_through(point, some)) return Part::kRest;
   evidence = evidence_of(point, looks);
   if (proposed ? stands(evidence) : !is_seen_through(evidence)) return Part::kRest;
   if (is_carrier(point, looks)) return Part::kRest;

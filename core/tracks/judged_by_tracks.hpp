@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <mosbench/method.hpp>
 #include <mosbench/settings.hpp>
@@ -35,6 +34,14 @@ std::unique_ptr<Method> make_by(const Settings& settings, const RunContext& cont
   RunContext proposing = context;
   proposing.scores = false;
   return std::make_unique<WholeTracks>(whole, make(config, proposing), context);
+}
+
+/// MethodKind::make of such a method, as mosbench::make_method of others.
+template <typename Made, typename Config>
+std::unique_ptr<Method> make_method(const Settings& settings, const RunContext& context) {
+  return make_by<Config>(settings, context, [](const Config& config, const RunContext& in) {
+    return std::make_unique<Made>(config, in);
+  });
 }
 
 }  // namespace mosbench::tracks

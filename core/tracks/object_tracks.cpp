@@ -48,7 +48,7 @@ std::size_t scans_of(std::span<const Sighting> sightings) {
   std::vector<std::uint32_t> scans;
   for (const Sighting& sighting : sightings) scans.push_back(sighting.scan);
   std::ranges::sort(scans);
-  return static_cast<std::size_t>(std::ranges::unique(scans).begin() - scans.begin());
+  return static_cast<std::size_t>(std::unique(scans.begin(), scans.end()) - scans.begin());
 }
 
 int distance2(const Cell& a, const Cell& b) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/base/median.hpp"
+#include "core/base/scan_steps.hpp"
 #include "core/base/stage_clock.hpp"
 
 namespace mosbench::tracks {
@@ -21,6 +21,13 @@ std::vector<std::uint32_t> offsets_of(const ScanPeriod& period) {
   return offsets;
 }
 
+float share_through(std::span<const Sighting> sightings) {
+  Seen seen;
+  for (const Sighting& sighting : sightings) seen += sighting.seen;
+  return seen.looks == 0 ? 0
+                         : static_cast<float>(seen.looks_through) / static_cast<float>(seen.looks);
+}
+
 /// Assigning {} would keep the memory.
 template <typename Value>
 void release_memory(std::vector<Value>& values) {
@@ -30,12 +37,7 @@ void release_memory(std::vector<Value>& values) {
 }  // namespace
 
 ScanPeriod::ScanPeriod(const std::vector<std::int64_t>& stamps_ns) {
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < stamps_ns.size(); ++i) {
-    steps_s.push_back(static_cast<double>(stamps_ns[i] - stamps_ns[i - 1]) * 1e-9);
-  }
-  const double median_s = upper_median(std::move(steps_s));
-  if (median_s >= 0.002 && median_s <= 20) period_s = median_s;
+  if (const auto period_ns = scan_period_ns(scan_steps_ns(stamps_ns))) period_s = *period_ns * 1e-9;
 }
 
 std::uint32_t ScanPeriod::scans(double seconds) const {
@@ -170,15 +172,12 @@ LabelledScan WholeTracks::judged(HeldScan& scan) const {
     const Cluster& cluster = scan.clusters[i];
     const std::vector<Sighting>& sightings = ObjectTracks::whole(scan.tracks[i])->sightings;
     const bool moving = moves(sightings, period_.period_s);
-    Seen seen;
-    for (const Sighting& sighting : sightings) seen += sighting.seen;
+    const float score = context().scores ? share_through(sightings) : 0;
     for (std::size_t j = 0; j < cluster.points.size(); ++j) {
       const std::uint32_t point = cluster.points[j];
       if (moving) result.labels[point] = kMovingLabel;
       if (!context().scores) continue;
-      result.scores[point] =
-          seen.looks == 0 ? 0
-                          : static_cast<float>(seen.looks_through) / static_cast<float>(seen.looks);
+      result.scores[point] = score;
       if (moving) result.reasons[point] = cluster.reasons[j];
     }
   }

@@ -3,10 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <memory>
 #include <mosbench/method.hpp>
-#include <string>
 #include <vector>
 
 #include "core/base/scan_method.hpp"

@@ -15,10 +15,11 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kDisturbed = "disturbed: ";
 
-std::string parse_disturbed(std::string_view text, const std::filesystem::path& file) {
+/// Returns by what data were disturbed; nothing for a text that says nothing of it.
+std::optional<std::string> disturbance_in(std::string_view text) {
   const std::string_view line = take_line(text);
-  if (line.starts_with(kDisturbed)) return std::string(line.substr(kDisturbed.size()));
-  throw DataError(file, "says nothing of disturbances", "a mark written by mosbench");
+  if (!line.starts_with(kDisturbed)) return std::nullopt;
+  return std::string(line.substr(kDisturbed.size()));
 }
 
 }  // namespace
@@ -62,8 +63,7 @@ DataMark mark_in(const std::filesystem::path& folder) {
   const bool is_there = std::filesystem::is_regular_file(marker, ignored);
   if (!mark.disturbed.empty() || !is_there) return mark;
   // A file of this name that says nothing of it is the user's.
-  const std::string text = read_file(marker);
-  if (text.starts_with(kDisturbed)) mark.disturbed = parse_disturbed(text, marker);
+  mark.disturbed = disturbance_in(read_file(marker)).value_or("");
   return mark;
 }
 
@@ -100,7 +100,10 @@ std::string format_mark(const DataMark& mark) {
 }
 
 DataMark parse_mark(std::string_view text, const std::filesystem::path& file) {
-  if (!text.starts_with('{')) return {std::nullopt, parse_disturbed(text, file)};
+  if (!text.starts_with('{')) {
+    if (auto disturbed = disturbance_in(text)) return {std::nullopt, *std::move(disturbed)};
+    throw DataError(file, "says nothing of disturbances", "a mark written by mosbench");
+  }
   DataMark mark{parse_simulated_origin(text, file), ""};
   mark.disturbed = mark.simulated->perturb.value_or("");
   return mark;

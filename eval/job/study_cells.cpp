@@ -69,16 +69,16 @@ std::vector<KnownSequence> simulated_sequences(const StudyData& data) {
   const std::vector<std::string> written =
       simulated_names(simulation.layout, load_scene(simulation.scene));
   const std::vector<std::string>& wanted = data.data.sequences;
-  const ordered_json json = {{"simulated", simulation_json(simulation)},
-                             {"reading", told_json(data.data.reading)}};
-  const std::string scene = hash_of_text(format_scene(load_scene(simulation.scene)));
+  const ordered_json made = simulation_json(simulation);
+  const ordered_json json = {{"simulated", made}, {"reading", told_json(data.data.reading)}};
+  const std::string drive = simulated_drive(made.at("scene"), simulation.seed);
   std::vector<KnownSequence> sequences;
   for (const std::string& name : wanted.empty() ? written : wanted) {
     if (std::ranges::find(written, name) == written.end()) {
       throw UsageError(fmt::format("{}: simulates no sequence {}, expected {}", data.name,
                                    mosbench::quoted(name), fmt::join(written, ", ")));
     }
-    sequences.push_back({simulation.layout, name, json, simulated_drive(scene, simulation.seed)});
+    sequences.push_back({simulation.layout, name, json, drive});
   }
   return sequences;
 }

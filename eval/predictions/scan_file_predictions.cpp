@@ -379,8 +379,7 @@ std::unique_ptr<Predictions> open_scan_files(const PredictionPlace& place, const
   } else if (has_ids) {
     if (const auto guessed = guess_id_map(ids, place.path)) {
       labels->set_id_map(*guessed);
-      remarks.push_back(
-          fmt::format("ids 0, 1 and 2 taken for a network's classes: {}", id_map_text(*guessed)));
+      remarks.push_back("ids 0, 1 and 2 taken for a network's classes: " + id_map_text(*guessed));
     }
   }
   labels->set_ids(std::move(ids));

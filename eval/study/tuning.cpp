@@ -172,12 +172,11 @@ void write_presets(const std::vector<StudyChoice>& choices) {
     if (!choice.preset) continue;
     const std::string text = json_text(to_json(*choice.preset));
     const fs::path& file = choice.preset->file;
-    if (!is_there(file)) {
-      write_file_atomic(file, text);
-    } else if (read_file(file) != text) {
+    if (is_there(file)) {
+      if (read_file(file) == text) continue;
       refuse_foreign(file);
-      write_file_atomic(file, text);
     }
+    write_file_atomic(file, text);
   }
 }
 

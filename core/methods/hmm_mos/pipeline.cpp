@@ -26,12 +26,6 @@ std::unique_ptr<Method> make_slow(const Settings& settings, const RunContext& co
   return tracks::make_by<Config>(settings, context, make_reference);
 }
 
-std::unique_ptr<Method> make_fast(const Settings& settings, const RunContext& context) {
-  return tracks::make_by<Config>(settings, context, [](const Config& config, const RunContext& in) {
-    return std::make_unique<Pipeline>(config, in);
-  });
-}
-
 }  // namespace
 
 std::vector<std::uint32_t> project_labels(const VoxelizedScan& scan, const VoxelSet& moving) {
@@ -204,7 +198,7 @@ MethodKind method_kind() {
               "a three-state hidden Markov model per voxel, changes convolved over space and time",
           .defaults = settings_of(Config{}),
           .check = check_settings<Config>,
-          .make = make_fast,
+          .make = tracks::make_method<Pipeline, Config>,
           .score_name = kScoreName,
           .threshold_name = kThresholdName,
           .is_named_by_variant = true};

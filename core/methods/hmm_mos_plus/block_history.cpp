@@ -2,28 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "core/base/median.hpp"
+#include "core/base/scan_steps.hpp"
 
 namespace mosbench::hmm_mos_plus {
 namespace {
 
 constexpr double kTick_ns = TickClock::kSeconds * 1e9;
-/// Stamps of scans that are apart by less or more tell no time: they are equal, fall, or are in
-/// another unit.
-constexpr double kShortestPeriod_ns = 2e6, kLongestPeriod_ns = 20e9;
 /// More periods than these between two scans change nothing any more.
 constexpr double kLongestGapPeriods = 1e4;
-
-/// Returns stamps[k] - stamps[k - 1] for each k but the first, as double: the difference of two
-/// arbitrary stamps may not fit.
-std::vector<double> distances_ns(std::span<const std::int64_t> stamps_ns) {
-  std::vector<double> distances;
-  for (std::size_t k = 1; k < stamps_ns.size(); ++k) {
-    distances.push_back(static_cast<double>(stamps_ns[k]) - static_cast<double>(stamps_ns[k - 1]));
-  }
-  return distances;
-}
 
 /// Turns are pruned before their age is beyond what 8 bits hold: it is below kMaxAgeTicks and
 /// this at an update, and grows by kMaxAgeTicks until `within` takes none for young.
@@ -33,17 +21,16 @@ static_assert(2 * BlockHistory::kMaxAgeTicks + kPruneTicks < 256);
 }  // namespace
 
 TickClock::TickClock(std::span<const std::int64_t> stamps_ns) {
-  const std::vector<double> apart_ns = distances_ns(stamps_ns);
-  if (apart_ns.empty()) return;
-  const double period_ns = upper_median(apart_ns);
-  if (period_ns < kShortestPeriod_ns || period_ns > kLongestPeriod_ns) return;
-  const double measured = period_ns / kTick_ns;
+  const std::vector<double> apart_ns = scan_steps_ns(stamps_ns);
+  const std::optional<double> period_ns = scan_period_ns(apart_ns);
+  if (!period_ns) return;
+  const double measured = *period_ns / kTick_ns;
   const double ticks_per_period = measured >= 0.8 && measured <= 1.25 ? 1.0 : measured;
   double periods = 0, last_tick = 0;
   const double period_s = ticks_per_period * kSeconds;
   ticks_.push_back({.period_s = period_s});
   for (const double distance_ns : apart_ns) {
-    const double passed = std::clamp(std::round(distance_ns / period_ns), 1.0, kLongestGapPeriods);
+    const double passed = std::clamp(std::round(distance_ns / *period_ns), 1.0, kLongestGapPeriods);
     periods += passed;
     const double tick = std::floor(periods * ticks_per_period);
     const auto steps = static_cast<std::uint32_t>(std::min(tick - last_tick, 1e9));

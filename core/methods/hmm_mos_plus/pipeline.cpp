@@ -137,16 +137,6 @@ void check(const Config& config) {
   hmm_mos::check(config.map);
 }
 
-namespace {
-
-std::unique_ptr<Method> make_plus(const Settings& settings, const RunContext& context) {
-  return tracks::make_by<Config>(settings, context, [](const Config& config, const RunContext& in) {
-    return std::make_unique<Pipeline>(config, in);
-  });
-}
-
-}  // namespace
-
 /// "hmm-mos-plus": the paper's method, completed to objects.
 MethodKind method_kind() {
   return {.name = "hmm-mos-plus",
@@ -155,7 +145,7 @@ MethodKind method_kind() {
           .summary = "objects that arrive in space known to be free, on the map of hmm-mos",
           .defaults = settings_of(Config{}),
           .check = check_settings<Config>,
-          .make = make_plus,
+          .make = tracks::make_method<Pipeline, Config>,
           .score_name = "share of seeds",
           .threshold_name = "least share of seeds",
           .gives_reasons = true,
