@@ -22,7 +22,7 @@ namespace {
 struct ScoreFlags : DataWords {
   ScoreTask task;
   std::optional<std::string> protocol, range, format, id_map;
-  std::string method = "unnamed";
+  std::optional<std::string> method;
   std::optional<std::filesystem::path> out;
   bool overwrite = false;
   std::optional<std::filesystem::path> map;  ///< cleaned of what moved, instead of predictions
@@ -136,8 +136,8 @@ Answer score(const ScoreFlags& options) {
   }
   const std::vector<SequenceScores> scores = score_dataset(dataset, task);
   if (options.out) {
-    write_scores(dataset, options.reading, task, method_name(options.method), scores, *options.out,
-                 options.overwrite);
+    const auto method = options.method ? std::optional(method_name(*options.method)) : std::nullopt;
+    write_scores(dataset, options.reading, task, method, scores, *options.out, options.overwrite);
   }
   return score_answer(dataset, task, scores, !split_asked);
 }
@@ -175,7 +175,8 @@ CommandRun add_score(CLI::App& command) {
   add(command, "--range MIN,MAX", options->range,
       "In metres, for protocols that limit it (default: that of the protocol)");
   add(command, "--method NAME", options->method,
-      "Name of the method, kept by --out; \"NAME, SETTING\" also keeps its setting");
+      "Name of the method, kept by --out; \"NAME, SETTING\" also keeps its setting (default: that "
+      "of the run that wrote the labels)");
   add(command, "--out DIR", options->out, "Write DIR/<sequence>/result.json");
   command.add_flag("--overwrite", options->overwrite, "Replace other scores in --out");
   add_threads_flag(command, options->task.threads);

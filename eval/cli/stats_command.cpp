@@ -39,8 +39,10 @@ struct StatsFlags : DataWords {
   bool shows(std::string_view what) const { return std::ranges::find(by, what) != by.end(); }
 };
 
+/// Adds to `doubts` those about the labels.
 std::vector<SequenceBreakdown> all_breakdowns(const StatsFlags& options, const Dataset& dataset,
-                                              const BreakdownTask& task) {
+                                              const BreakdownTask& task,
+                                              std::vector<Doubt>& doubts) {
   PredictionOptions prediction;
   if (options.format) prediction.format = prediction_format_named(*options.format);
   std::vector<SequenceBreakdown> breakdowns;
@@ -49,6 +51,12 @@ std::vector<SequenceBreakdown> all_breakdowns(const StatsFlags& options, const D
     if (scans.empty()) continue;
     const OpenedPredictions opened = open_predictions(*options.predictions, *sequence, scans,
                                                       dataset.sequences.size() == 1, prediction);
+    const std::optional<Result> run = run_that_wrote(opened.path);
+    if (run) {
+      for (std::string& doubt : doubts_of_labels(*run, *sequence)) {
+        doubts.push_back({sequence->name(), std::move(doubt)});
+      }
+    }
     breakdowns.push_back(break_down(*sequence, scans, *opened.labels, task));
   }
   if (!breakdowns.empty()) return breakdowns;
@@ -141,8 +149,9 @@ Answer breakdown_of(const StatsFlags& options, const CLI::App& command) {
   const Dataset dataset = open_dataset(options);
   const ScoreRule rule = rule_of(options.protocol, options.range, dataset.kind);
   const BreakdownTask task = {rule.protocol, rule.range, options.threads};
-  return answer_of(options, dataset, standing_of(dataset), task,
-                   all_breakdowns(options, dataset, task));
+  std::vector<Doubt> doubts;
+  const std::vector<SequenceBreakdown> breakdowns = all_breakdowns(options, dataset, task, doubts);
+  return answer_of(options, dataset, standing_of(dataset, std::move(doubts)), task, breakdowns);
 }
 
 Answer curve(const StatsFlags& options, const ResultSet& run) {

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <map>
 #include <mutex>
+#include <string_view>
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/sequence/fingerprint.hpp"
@@ -95,13 +96,14 @@ std::vector<ScanRow> score_one(const Frame& frame, const std::string& stem, std:
   const std::optional<Confusion> counted = labels.counts(k);
   const std::vector<std::uint32_t> predicted =
       counted ? std::vector<std::uint32_t>{} : labels.labels(k, confidences);
-  const LabelHash hash = hash_of_labels(*frame.truth);
+  const LabelHash truth_hash = hash_of_labels(*frame.truth), label_hash = hash_of_labels(predicted);
   std::vector<ScanRow> rows;
   for (const ScoreRule& rule : task.rules) {
     ScanRow& row = rows.emplace_back();
     row.stem = stem;
     row.points = frame.truth->size();
-    row.truth_hash = hash;
+    row.truth_hash = truth_hash;
+    if (!counted) row.label_hash = label_hash;
     row.counts =
         counted ? *counted
                 : score_scan(*rule.protocol, *frame.truth, predicted, frame.points, rule.range);
@@ -166,6 +168,30 @@ void add_doubts(const Sequence& sequence, const std::vector<std::size_t>& scans,
   if (!shift.empty()) opened.doubts.push_back(shift);
 }
 
+/// Says how many label files a run did not write as they are; empty for none.
+std::string changed_since(const Result& run, const std::vector<ScanRow>& rows) {
+  std::map<std::string_view, std::optional<LabelHash>> written;
+  for (const ScanRow& row : run.scans) written.emplace(row.stem, row.label_hash);
+  const auto others = std::ranges::count_if(rows, [&](const ScanRow& row) {
+    const auto before = written.find(row.stem);
+    return before != written.end() && before->second && before->second != row.label_hash;
+  });
+  if (others == 0) return "";
+  return fmt::format("LABELS CHANGED after the run: {} of {} are not those that it wrote", others,
+                     counted(rows.size(), "label file"));
+}
+
+/// Adds what is known of the labels where a run wrote them.
+void add_doubts_of_run(const Sequence& sequence, const ScoreTask& task, SequenceScores& scores) {
+  OpenedPredictions& opened = *scores.opened;
+  scores.run = run_that_wrote(opened.path);
+  if (!scores.run) return;
+  opened.doubts = doubts_of_labels(*scores.run, sequence);
+  const bool as_written = opened.format == PredictionFormat::kLabel && !task.options.id_map;
+  std::string changed = as_written ? changed_since(*scores.run, scores.by_rule.front()) : "";
+  if (!changed.empty()) opened.doubts.push_back(std::move(changed));
+}
+
 SequenceScores score_sequence(const Dataset& dataset, std::size_t position, const ScoreTask& task,
                               ThreadPool& pool) {
   const Sequence& sequence = *dataset.sequences[position];
@@ -182,6 +208,7 @@ SequenceScores score_sequence(const Dataset& dataset, std::size_t position, cons
   }
   try {
     score_scans(sequence, scans, task, pool, scores);
+    add_doubts_of_run(sequence, task, scores);
     add_doubts(sequence, scans, task.rules.front(), scores);
   } catch (const DataError& error) {
     throw scores.opened->with_format(error);

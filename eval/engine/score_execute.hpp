@@ -35,6 +35,7 @@ struct SequenceScores {
   std::size_t position;                       ///< in the data set
   std::optional<OpenedPredictions> opened;    ///< nothing when no scan was wanted
   std::vector<std::vector<ScanRow>> by_rule;  ///< as many as rules, each the same scans
+  std::optional<Result> run{};                ///< that wrote the predictions, where one of ours did
   std::optional<ScoreCounts> confidences{};   ///< by the first rule, where the predictions have any
 };
 

@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/label_file.hpp"
-#include "datasets/text/json_text.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/predictions/prediction_files.hpp"
 
@@ -171,29 +169,6 @@ PredictionFormat settle_format(PredictionFormat found, const PredictionOptions& 
                                describe(found).name));
 }
 
-/// Says where labels that mosbench wrote are of scans that were disturbed in another way.
-std::string disturbance_remark(const PredictionPlace& place, const Sequence& sequence) {
-  const std::filesystem::path file = place.path.parent_path() / "result.json";
-  std::string labelled, now;
-  try {
-    if (!is_there(file)) return "";
-    labelled = parse_json(read_file(file), file).at("reading").value("perturb", "");
-  } catch (const DataError&) {  // of another program
-    return "";
-  } catch (const nlohmann::json::exception&) {
-    return "";
-  }
-  if (const auto& perturb = sequence.reading().perturb) now = to_string(*perturb);
-  if (labelled == now) return "";
-  const auto text = [](const std::string& perturb) {
-    return perturb.empty() ? std::string("not disturbed") : "disturbed by " + perturb;
-  };
-  return fmt::format(
-      "the scans that were labelled are {}, those read now are {}: the same --perturb "
-      "makes them agree",
-      text(labelled), text(now));
-}
-
 }  // namespace
 
 std::span<const DescribedFormat> prediction_formats() { return kFormats; }
@@ -313,9 +288,6 @@ OpenedPredictions open_predictions(const std::filesystem::path& root, const Sequ
     opened.missing = missing_scans(*opened.labels, place, sequence, wanted, errors);
   } catch (const DataError& error) {
     throw opened.with_format(error);
-  }
-  if (std::string remark = disturbance_remark(place, sequence); !remark.empty()) {
-    opened.doubts.push_back(std::move(remark));
   }
   opened.remarks.insert(opened.remarks.end(), errors.texts().begin(), errors.texts().end());
   return opened;

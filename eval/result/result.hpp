@@ -232,6 +232,12 @@ std::string split_warning(const std::string& split);
 /// protocol does not know, one class alone in the truth, poses that odometry does not trust.
 std::vector<std::string> doubts_of(const Result& result);
 
+/// Returns the run that wrote the labels at this place; nothing for labels of others.
+std::optional<Result> run_that_wrote(const std::filesystem::path& labels);
+/// Returns what makes labels of a run doubtful on these scans, whoever scores them: what was found
+/// in its data, settings and poses.
+std::vector<std::string> doubts_of_labels(const Result& run, const Sequence& sequence);
+
 /// What has to be said wherever numbers of one result are shown: which scans are not counted, and
 /// doubts.
 std::vector<std::string> notices_of(const Result& result);
@@ -281,8 +287,8 @@ std::string simulated_notice(const SimulatedOrigin& origin);
 /// What made the first simulated sequence of a data set; nothing for recorded data.
 std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& dataset);
 
-/// What every format has to show beside numbers of a data set.
-Standing standing_of(const Dataset& dataset);
+/// What every format has to show beside numbers of a data set, with doubts about its labels.
+Standing standing_of(const Dataset& dataset, std::vector<Doubt> doubts = {});
 
 /// Says how the label files of a run are not those that its result counts, by their number and
 /// sizes. Nothing for a result without label files.

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <iterator>
 
+#include "datasets/disk/files.hpp"
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/result/result.hpp"
+#include "eval/result/result_file.hpp"
 #include "eval/result/result_json.hpp"
 
 namespace mosbench {
@@ -61,6 +63,36 @@ void add_doubts_of_truth(const Result& result, std::vector<std::string>& doubts)
                                moving == 0 ? "moves: an IoU is 0 or undefined" : "stands still"));
 }
 
+std::string stale_doubt(const Result& result) {
+  if (const auto changed = changed_program_file(result)) {
+    return fmt::format("STALE: {} has changed since", changed->string());
+  }
+  for (const ProgramFile& file : result.from.program_files) {
+    if (is_there(file.path)) continue;
+    return fmt::format("nobody can tell whether it is stale: {} is not there", file.path.string());
+  }
+  return "";
+}
+
+void add_once(std::string doubt, std::vector<std::string>& doubts) {
+  const bool is_new = std::ranges::find(doubts, doubt) == doubts.end();
+  if (!doubt.empty() && is_new) doubts.push_back(std::move(doubt));
+}
+
+/// Adds those about poses that were found, and about scans that were not judged.
+void add_doubts_of_method(const Result& result, std::vector<std::string>& doubts) {
+  if (result.doubtful_poses && !result.doubtful_poses->empty()) {
+    const DoubtfulPose& first = result.doubtful_poses->front();
+    doubts.push_back(fmt::format("{} of {} found are doubtful, first that of scan {}: {}",
+                                 result.doubtful_poses->size(),
+                                 counted(result.scans.size(), "pose"), first.stem, first.doubt));
+  }
+  if (!result.scans.empty() && std::ranges::none_of(result.scans, &ScanRow::judged)) {
+    doubts.push_back(fmt::format("all {} labelled static without detection",
+                                 counted(result.scans.size(), "scan is", "scans are")));
+  }
+}
+
 }  // namespace
 
 std::size_t missing_predictions(const ResultSet& set) {
@@ -84,24 +116,40 @@ std::string split_warning(const std::string& split) {
 std::vector<std::string> doubts_of(const Result& result) {
   std::vector<std::string> doubts = result.doubts;
   // Older results do not say it among their doubts.
-  const std::string disturbed = disturbed_doubt(mark_of(result));
-  const bool is_said = disturbed.empty() || std::ranges::find(doubts, disturbed) != doubts.end();
-  if (!is_said) doubts.push_back(disturbed);
-  if (auto changed = changed_labels(result)) doubts.push_back(std::move(*changed));
-  if (const auto changed = changed_program_file(result)) {
-    doubts.push_back(fmt::format("STALE: {} has changed since", changed->string()));
-  }
+  add_once(disturbed_doubt(mark_of(result)), doubts);
+  add_once(changed_labels(result).value_or(""), doubts);
+  add_once(stale_doubt(result), doubts);
   add_doubts_of_truth(result, doubts);
-  if (result.doubtful_poses && !result.doubtful_poses->empty()) {
-    const DoubtfulPose& first = result.doubtful_poses->front();
-    doubts.push_back(fmt::format("{} of {} found are doubtful, first that of scan {}: {}",
-                                 result.doubtful_poses->size(),
-                                 counted(result.scans.size(), "pose"), first.stem, first.doubt));
+  add_doubts_of_method(result, doubts);
+  return doubts;
+}
+
+std::optional<Result> run_that_wrote(const fs::path& labels) {
+  std::error_code ignored;
+  const fs::path file = fs::weakly_canonical(labels, ignored).parent_path() / "result.json";
+  try {
+    if (!is_there(file)) return std::nullopt;
+    Result run = read_result(file);
+    if (!run.predictions) return run;
+  } catch (const DataError&) {  // of another program
   }
-  if (!result.scans.empty() && std::ranges::none_of(result.scans, &ScanRow::judged)) {
-    doubts.push_back(fmt::format("all {} labelled static without detection",
-                                 counted(result.scans.size(), "scan is", "scans are")));
-  }
+  return std::nullopt;
+}
+
+std::vector<std::string> doubts_of_labels(const Result& run, const Sequence& sequence) {
+  std::vector<std::string> doubts = run.doubts;
+  add_once(stale_doubt(run), doubts);
+  add_doubts_of_method(run, doubts);
+  const auto& perturb = sequence.reading().perturb;
+  const std::string labelled = disturbance_of(run), now = perturb ? to_string(*perturb) : "";
+  if (labelled == now) return doubts;
+  const auto text = [](const std::string& disturbance) {
+    return disturbance.empty() ? std::string("not disturbed") : "disturbed by " + disturbance;
+  };
+  doubts.push_back(
+      fmt::format("the scans that were labelled are {}, those read now are {}: the same --perturb "
+                  "makes them agree",
+                  text(labelled), text(now)));
   return doubts;
 }
 
@@ -257,11 +305,13 @@ std::optional<nlohmann::ordered_json> simulated_origin_json(const Dataset& datas
   return origin != nullptr ? std::optional(to_json(*origin)) : std::nullopt;
 }
 
-Standing standing_of(const Dataset& dataset) {
-  std::vector<Doubt> doubts;
+Standing standing_of(const Dataset& dataset, std::vector<Doubt> doubts) {
   for (const std::unique_ptr<Sequence>& sequence : dataset.sequences) {
     for (std::string& doubt : doubts_of(*sequence)) {
-      doubts.push_back({sequence->name(), std::move(doubt)});
+      const bool is_said = std::ranges::any_of(doubts, [&](const Doubt& one) {
+        return one.about == sequence->name() && one.what == doubt;
+      });
+      if (!is_said) doubts.push_back({sequence->name(), std::move(doubt)});
     }
   }
   Standing standing{.doubts = told(doubts)};

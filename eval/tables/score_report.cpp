@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/doctor/doctor.hpp"
@@ -119,8 +121,17 @@ Result scored_result(const Dataset& dataset, const ScoreRule& rule, const Sequen
   result.from.reading = members_of(sequence.reading());
   result.from.simulated = sequence.simulated();
   result.doubts = doubts_of(sequence);
-  result.doubts.insert(result.doubts.end(), scores.opened->doubts.begin(),
-                       scores.opened->doubts.end());
+  for (const std::string& doubt : scores.opened->doubts) {
+    const bool is_said = std::ranges::find(result.doubts, doubt) != result.doubts.end();
+    if (!is_said) result.doubts.push_back(doubt);
+  }
+  result.method = scores.run ? scores.run->method : "unnamed";
+  if (scores.run) {
+    result.setting = scores.run->setting;
+    result.from.program = scores.run->from.program;
+    result.from.program_files = scores.run->from.program_files;
+    result.settings_from = scores.run->settings_from;
+  }
   result.predictions = scored_predictions(*scores.opened);
   result.splits = picked_stems(dataset, scores.position);
   result.scans = scores.by_rule.front();
@@ -274,14 +285,17 @@ void check_scored_folders(const Dataset& dataset, const std::filesystem::path& o
 }
 
 void write_scores(const Dataset& dataset, const Reading& reading, const ScoreTask& task,
-                  const MethodName& method, const std::vector<SequenceScores>& scores,
-                  const std::filesystem::path& out, bool overwrite) {
+                  const std::optional<MethodName>& method,
+                  const std::vector<SequenceScores>& scores, const std::filesystem::path& out,
+                  bool overwrite) {
   std::vector<Result> results;
   for (const SequenceScores& sequence : scores) {
     if (!sequence.opened) continue;
     Result& result = results.emplace_back(scored_result(dataset, task.rules.front(), sequence));
-    result.method = method.name;
-    result.setting = method.setting;
+    if (method) {
+      result.method = method->name;
+      result.setting = method->setting;
+    }
     result.summary_split = picked_split(dataset, task);
     result.places = places_of(dataset, reading, task, sequence.opened->format);
     result.file = out / result.sequence.folder() / "result.json";

@@ -82,7 +82,8 @@ void check_scored_folders(const Dataset& dataset, const std::filesystem::path& o
 /// read those of a run; `reading` is how the data set was opened. Throws DataError, and UsageError
 /// for a result there that holds other scores, unless they are to be overwritten.
 void write_scores(const Dataset& dataset, const Reading& reading, const ScoreTask& task,
-                  const MethodName& method, const std::vector<SequenceScores>& scores,
-                  const std::filesystem::path& out, bool overwrite);
+                  const std::optional<MethodName>& method,
+                  const std::vector<SequenceScores>& scores, const std::filesystem::path& out,
+                  bool overwrite);
 
 }  // namespace mosbench

@@ -129,7 +129,33 @@ TEST_F(Exec, IsRefusedByTablesWhenItsFilesHaveChangedSince) {
     EXPECT_EQ(cli::run({"stats", out}).exit_code, 0);
   }
   fs::remove(weights);  // as on another machine
-  EXPECT_EQ(cli::run({"stats", out}).exit_code, 0);
+  const cli::Answer gone = cli::run({"stats", out});
+  EXPECT_EQ(gone.exit_code, 0);
+  EXPECT_THAT(gone.out, HasSubstr("nobody can tell whether it is stale: " + weights.string()));
+}
+
+TEST_F(Exec, IsStaleWhereItsLabelsAreScored) {
+  const fs::path script = folder_.write("ours.sh", client() + "\n");
+  const std::string out = folder_ / "out", room = folder_ / "room", scores = folder_ / "scores";
+  const std::vector<std::string> score = {"score", room, "--predictions", out};
+  std::vector<std::string> keep = score;
+  keep.insert(keep.end(), {"--out", scores});
+  ASSERT_EQ(cli::run(command("sh '" + script.string() + "'")).exit_code, 0);
+  EXPECT_THAT(cli::run(keep).out, Not(HasSubstr("STALE")));
+  EXPECT_THAT(cli::run({"rank", scores}).out, HasSubstr("exec:sh"));  // not "unnamed"
+  write_file_atomic(script, read_file(script) + "\n");
+  const std::string stale = "STALE: " + script.string() + " has changed since";
+  EXPECT_EQ(cli::run({"rank", scores}).exit_code, 3);
+  for (const char* as : {"text", "json", "csv"}) {
+    for (std::vector<std::string> words :
+         {score, {"stats", room, "--by", "range", "--predictions", out}}) {
+      words.insert(words.end(), {"--as", as});
+      EXPECT_THAT(cli::run(words).out, HasSubstr(stale)) << words.front() << " as " << as;
+    }
+  }
+  keep.emplace_back("--overwrite");
+  ASSERT_EQ(cli::run(keep).exit_code, 0);
+  EXPECT_EQ(cli::run({"rank", scores}).exit_code, 3);
 }
 
 TEST_F(Exec, IsRunAgainWhereTheFilesOfItsResultHaveChangedButNotThoseOfNow) {

@@ -125,6 +125,12 @@ TEST(ResultLabels, ThatWereReplacedAfterTheRunAreADoubtOfEveryTable) {
       EXPECT_THAT(cli::run(all).out, testing::HasSubstr(whole)) << words.front() << as;
     }
   }
+  ASSERT_EQ(cli::run({"run", folder / "room", "--out", out, "--overwrite"}).exit_code, 0);
+  const std::vector<std::string> score = {"score", folder / "room", "--predictions", out};
+  EXPECT_THAT(cli::run(score).out, testing::Not(testing::HasSubstr("LABELS CHANGED")));
+  folder.write("out/room/labels/000002.label", std::string(4 * 8640, '\0'));
+  EXPECT_THAT(cli::run(score).out,
+              testing::HasSubstr("LABELS CHANGED after the run: 1 of 4 label files are not"));
   // A result alone, as of a baseline, has none that could be others.
   std::filesystem::remove_all(labels);
   EXPECT_THAT(cli::run({"stats", out}).out, testing::Not(testing::HasSubstr(doubt)));

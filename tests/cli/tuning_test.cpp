@@ -73,6 +73,9 @@ TEST_F(Tuning, WritesAPresetThatRunTakes) {
                                  "00", "--preset", preset, "--out", path("tuned")});
   ASSERT_EQ(tuned.exit_code, 0) << tuned.err;
   EXPECT_THAT(tuned.out, HasSubstr("tuned on this sequence"));
+  const cli::Answer scored = run({"score", path("data"), "--dataset", "semantickitti",
+                                  "--sequences", "00", "--predictions", path("tuned")});
+  EXPECT_THAT(scored.out, HasSubstr("tuned on this sequence"));
   const cli::Answer part = run({"run", path("data"), "--dataset", "semantickitti", "--sequences",
                                 "00", "--scans", ":8", "--preset", preset, "--out", path("part")});
   EXPECT_THAT(part.out, HasSubstr("tuned on a sequence of this name"));
