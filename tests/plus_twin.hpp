@@ -28,7 +28,7 @@ struct Cell {
 
 struct Scan final : Observed {
   PointVoxels voxels;
-  SetOf measured, observed, occupied, ground, seeds, arrived, fresh, settled, aged, standing,
+  SetOf measured, observed, occupied, ground, seeds, arrived, open, fresh, settled, aged, standing,
       departed;
   SetOf predicted;
   Eigen::Vector3d sensor_m = Eigen::Vector3d::Zero();
@@ -105,6 +105,12 @@ class PlusTwin final : public Method {
       const Cell* cell = find(map_, v);
       if (cell == nullptr || cell->state != kOccupied) continue;
       if (young(*cell)) scan.arrived.insert(v);
+      const auto sees_through = [&](const Voxel& u) {
+        const Cell* other = find(map_, u);
+        return other != nullptr && other->last_seen == k_ && !scan.occupied.contains(u);
+      };
+      const bool is_open = sees_through({v.x, v.y, v.z - 1}) || sees_through({v.x, v.y, v.z + 1});
+      if (young(*cell) && is_open) scan.open.insert(v);
       if (young(*cell) && may_be_seed(v, true)) scan.seeds.insert(v);
       if (young(*cell) && is_within(*cell, c_.fresh_age_s)) scan.fresh.insert(v);
       if (cell->occupied_ticks >= 5) scan.aged.insert(v);
@@ -331,8 +337,25 @@ class PlusTwin final : public Method {
       }
       const bool is_attached = settled > c_.max_settled_share * voxels && arrived < 0.8 * voxels;
       component.moves =
-          component.steady_steps >= 2 || !(is_attached || is_doubtful(scan, component.voxels));
+          component.steady_steps >= 2 ||
+          !(is_attached || is_doubtful(scan, component.voxels) || is_flat(scan, component.voxels));
     }
+  }
+
+  /// One voxel high, with all that was near, and seen through straight above or below.
+  bool is_flat(const Scan& scan, const SetOf& voxels) const {
+    const int reach = std::min(8, static_cast<int>(0.6 / c_.map.voxel_size_m));
+    double arrived = 0, open = 0;
+    for (const Voxel& v : voxels) {
+      arrived += scan.arrived.contains(v) ? 1 : 0;
+      open += scan.open.contains(v) ? 1 : 0;
+    }
+    const auto are_level = [&](const SetOf& others) {
+      return std::ranges::all_of(others, [&](const Voxel& v) { return v.z == voxels.begin()->z; });
+    };
+    return open > 0.2 * arrived && std::ranges::all_of(seen_, [&](const Seen& seen) {
+             return are_level(seen.voxels) || gap_between(seen.voxels, voxels) > reach;
+           });
   }
 
   /// New, and came into view, or is small.

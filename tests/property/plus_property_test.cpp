@@ -252,7 +252,7 @@ TEST(PlusBetweenRowsOfBeams, HasSeedsWhereTheGapsAreNoLonger) {
 }
 
 TEST(PlusObjectsOfFewVoxels, MoveWhenFewPureSeedsAreEnough) {
-  const SmallWorld world = world_seen_in_rows(1, 0.3F);
+  const SmallWorld world = world_seen_in_rows(1, 0.6F);
   hmm_mos_plus::Config config = plus_of_a_room();
   config.min_seeds_voxels = 100;
   EXPECT_GT(moving_points(plus_labels(world, config)), 0U);

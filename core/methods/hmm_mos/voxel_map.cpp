@@ -152,8 +152,11 @@ std::optional<VoxelMap::KnownBlock> VoxelMap::block_at(std::uint32_t scan_index,
   if (slot == kNoSlot) return std::nullopt;
   refresh_block(slot, scan_index);
   const Block& block = blocks_[slot];
+  const bool is_observed = block.newest_seen == scan_index;
   return KnownBlock{
-      {without(block.states.occupied, block.stale), without(block.states.free, block.stale)}, slot};
+      {without(block.states.occupied, block.stale), without(block.states.free, block.stale)},
+      is_observed ? block.fresh : BlockMask{},
+      slot};
 }
 
 VoxelList VoxelMap::update(const VoxelList& observed, std::span<const VoxelSet* const> sources,

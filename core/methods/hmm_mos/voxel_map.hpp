@@ -67,9 +67,11 @@ class VoxelMap {
   /// Returns P'_chg since `first_scan`: voxels whose last change is at that scan or later.
   VoxelSet changed_since(std::uint32_t first_scan) const { return changes_.since(first_scan); }
 
-  /// The states S of a block's known voxels, and the slot by which its observer knows it.
+  /// The states S of a block's known voxels, those that the scan observed, and the slot by which
+  /// its observer knows it.
   struct KnownBlock {
     BlockStates known;
+    BlockMask observed;
     std::uint32_t slot;
   };
   /// Returns that of a block at `scan_index`, nullopt where there is none. Not const as `known_at`

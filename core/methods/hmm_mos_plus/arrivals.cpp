@@ -84,13 +84,32 @@ void add_seeds(const VoxelizedScan& scan, ScanMasks raw, const RememberedMap& ma
   });
 }
 
+/// Returns, of a scan's voxels in one block, those straight above or below which it saw through.
+BlockMask open_among(const BlockMask& voxels, const VoxelizedScan& scan, const RememberedMap& map,
+                     const BlockIndex& at) {
+  const auto seen_through = [&](int dz) {
+    const BlockIndex index{at.x, at.y, at.z + dz};
+    const auto past = map.past_at(index);
+    const BlockMask* occupied = scan.occupied_in(index);
+    if (!past) return BlockMask{};
+    return occupied == nullptr ? past->observed : without(past->observed, *occupied);
+  };
+  const BlockMask below = seen_through(-1), own = seen_through(0), above = seen_through(1);
+  BlockMask open;
+  for (std::size_t z = 0; z < kBlockSide; ++z) {
+    open.words[z] = voxels.words[z] & ((z > 0 ? own.words[z - 1] : below.words.back()) |
+                                       (z + 1 < kBlockSide ? own.words[z + 1] : above.words[0]));
+  }
+  return open;
+}
+
 }  // namespace
 
 ArrivalClasses classify(const VoxelizedScan& scan, const RememberedMap& map, const Config& config,
                         ThreadPool& pool) {
   const std::size_t blocks = scan.measured.block_count();
   const ScanMasks none(blocks);
-  ArrivalClasses classes{none, none, none, none, none, none};
+  ArrivalClasses classes{none, none, none, none, none, none, none};
   const std::uint32_t seed_age_ticks = ticks_of(config.seed_age_s);
   const std::uint32_t fresh_age_ticks = ticks_of(config.fresh_age_s);
   const std::uint32_t object_age_ticks = ticks_of(config.object_age_s);
@@ -102,6 +121,9 @@ ArrivalClasses classify(const VoxelizedScan& scan, const RememberedMap& map, con
     const BlockMask occupied = scan.occupied[i] & past->known.occupied;
     classes.arrived[i] = history.sure_within(occupied, seed_age_ticks, past->tick);
     classes.fresh[i] = history.sure_within(classes.arrived[i], fresh_age_ticks, past->tick);
+    if (classes.arrived[i].any()) {
+      classes.open[i] = open_among(classes.arrived[i], scan, map, scan.measured.blocks[i]);
+    }
     classes.aged[i] = history.aged() & occupied;
     const BlockMask came = history.arrived_within(classes.aged[i], object_age_ticks, past->tick);
     classes.settled[i] = without(history.settled() & occupied, came);

@@ -15,6 +15,8 @@ constexpr std::uint32_t kSeenTicks = 10;
 constexpr double kArrivedShare = 0.8;
 /// What is new and arrived by less came into view.
 constexpr double kNewArrivedShare = 0.3;
+/// A flat thing is seen to be so by more than this share of what arrived.
+constexpr double kOpenShare = 0.2;
 
 /// What was followed at a steady velocity over so many steps is no part of what stands.
 constexpr int kSteadySteps = 2;
@@ -48,7 +50,10 @@ Attachments::Seen Attachments::look_at(const VoxelizedScan& scan, const ArrivalC
   for (const std::uint32_t slot : slots_within(scan, voxels, reach_)) {
     const BlockIndex& block = scan.measured.blocks[slot];
     const BlockMask* own = voxels.mask_of(block);
-    if (own != nullptr) seen.arrived += (*own & classes.arrived[slot]).count();
+    if (own != nullptr) {
+      seen.arrived += (*own & classes.arrived[slot]).count();
+      seen.open += (*own & classes.open[slot]).count();
+    }
     BlockMask beside = without(classes.settled[slot], low.in(slot));
     if (own != nullptr) beside = without(beside, *own);
     if (!beside.any()) continue;
@@ -81,6 +86,17 @@ bool Attachments::is_doubtful(const Seen& component) const {
          });
 }
 
+/// Whether it is one voxel high, as was all that lay near, and this is no gap between beams.
+bool Attachments::is_flat(const Seen& component) const {
+  const std::int32_t z = component.box.low.z;
+  return static_cast<double>(component.open) >
+             kOpenShare * static_cast<double>(component.arrived) &&
+         std::ranges::all_of(seen_, [&](const Seen& seen) {
+           return (seen.box.low.z == z && seen.box.high.z == z) ||
+                  !are_within(reach_, seen.box, component.box);
+         });
+}
+
 void Attachments::judge(const VoxelizedScan& scan, const ArrivalClasses& classes, LowVoxels& low,
                         std::uint32_t at, std::vector<Component>& components) {
   while (!seen_.empty() && at - seen_.front().at > kSeenTicks) seen_.pop_front();
@@ -94,8 +110,8 @@ void Attachments::judge(const VoxelizedScan& scan, const ArrivalClasses& classes
   for (Component& component : components) {
     if (!component.moves) continue;
     const Seen& seen = seen_[next++];
-    component.moves =
-        component.steady_steps >= kSteadySteps || (!is_attached(seen) && !is_doubtful(seen));
+    const bool stands = is_attached(seen) || is_doubtful(seen) || is_flat(seen);
+    component.moves = component.steady_steps >= kSteadySteps || !stands;
   }
 }
 

@@ -15,7 +15,7 @@ namespace mosbench::hmm_mos_plus {
 /// Tells what is part of a surface that has been standing: it lies beside settled voxels, and much
 /// of it did not arrive. Parts of a parked car that come into view are seen one after the other, so
 /// it sums what lay near in the last second. What is new and came into view, or is small, waits for
-/// a second scan.
+/// a second scan. What is seen to be flat is the edge of something that stands, between two beams.
 class Attachments {
  public:
   explicit Attachments(const Config& config);
@@ -31,6 +31,7 @@ class Attachments {
     Box box;
     std::size_t voxels = 0;
     std::size_t arrived = 0;  ///< of these
+    std::size_t open = 0;     ///< arrived, seen through straight above or below
     std::size_t settled = 0;  ///< beside these, not low
     std::uint32_t at = 0;
   };
@@ -39,6 +40,7 @@ class Attachments {
                const Component& component) const;
   bool is_attached(const Seen& component) const;
   bool is_doubtful(const Seen& component) const;
+  bool is_flat(const Seen& component) const;
 
   int reach_;  // voxels
   double max_settled_share_;

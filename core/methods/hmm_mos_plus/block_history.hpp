@@ -151,6 +151,7 @@ struct RememberedMap {
   /// The states of a block's known voxels, and how all its voxels came to theirs.
   struct Past {
     hmm_mos::BlockStates known;
+    BlockMask observed;  ///< by scan k
     const BlockHistory& history;
     std::uint32_t tick;  ///< of the last update
   };
@@ -158,7 +159,7 @@ struct RememberedMap {
   std::optional<Past> past_at(const BlockIndex& index) const {
     const auto block = map.block_at(k, index);
     if (!block) return std::nullopt;
-    return Past{block->known, memory.history(block->slot), memory.tick().at};
+    return Past{block->known, block->observed, memory.history(block->slot), memory.tick().at};
   }
 };
 

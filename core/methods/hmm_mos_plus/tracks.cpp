@@ -213,6 +213,7 @@ void LookBack::enter(const VoxelizedScan& scan, const ArrivalClasses& classes,
                     .fresh = of_slots(classes.fresh),
                     .settled = ScanMasks(slots.size()),
                     .aged = of_slots(classes.aged),
+                    .open = ScanMasks(slots.size()),
                     .standing = of_slots(classes.standing)},
                    std::move(ground),
                    tick});

@@ -9,10 +9,11 @@ namespace {
 
 /// A row of ten voxels along x that is a component, and rows beside it that are settled.
 struct RowBesideOthers {
-  int voxels = 10, arrived = 0;
+  int voxels = 10, arrived = 0, open = 0;
   int settled = 10, settled_at_y = 2;  ///< 0.6 m are two voxels
   int steady_steps = 0;
   bool low = false;
+  int last_z = 0;  ///< of its last voxel
 };
 
 /// Whether a row moves in the last of some scans, each with its tick.
@@ -31,15 +32,18 @@ bool moves_last(const std::vector<std::pair<std::uint32_t, RowBesideOthers>>& sc
     };
     Component component{.voxels = {}, .moves = true, .steady_steps = row.steady_steps};
     for (int x = 0; x < row.voxels; ++x) {
-      component.voxels.push_back(add({x, 0, 0}) * kBlockVoxels + cell_of({x, 0, 0}));
+      const Voxel v{x, 0, x + 1 == row.voxels ? row.last_z : 0};
+      component.voxels.push_back(add(v) * kBlockVoxels + cell_of(v));
     }
     for (int x = 0; x < row.settled; ++x) add({x, row.settled_at_y, 0});
     for (int x = 0; x < 10; x += 5) add({x, 0, row.low ? 0 : -20});
     scan.occupied = scan.measured.masks;
     const ScanMasks none(scan.occupied.size());
-    ArrivalClasses classes{none, none, none, none, none, none};
+    ArrivalClasses classes{none, none, none, none, none, none, none};
     for (int x = 0; x < row.arrived; ++x) {
-      classes.arrived[scan.measured.find(block_of({x, 0, 0}))].set(cell_of({x, 0, 0}));
+      const std::uint32_t slot = scan.measured.find(block_of({x, 0, 0}));
+      classes.arrived[slot].set(cell_of({x, 0, 0}));
+      if (x < row.open) classes.open[slot].set(cell_of({x, 0, 0}));
     }
     for (int x = 0; x < row.settled; ++x) {
       const Voxel v{x, row.settled_at_y, 0};
@@ -90,6 +94,18 @@ TEST(PlusAttachments, WaitForASecondScanWhereTheyCameIntoView) {
   EXPECT_TRUE(moves_last({{8, {.arrived = 3, .settled = 0}}}));
   EXPECT_FALSE(moves_last({{8, small}}));
   EXPECT_TRUE(moves_last({{8, small}, {9, small}}));
+}
+
+TEST(PlusAttachments, AreEdgesBetweenTwoBeamsWhereTheyAreSeenToBeFlat) {
+  const RowBesideOthers edge{.arrived = 10, .open = 3};
+  EXPECT_FALSE(moves(edge));
+  EXPECT_TRUE(moves({.arrived = 10, .open = 2})) << "the next beams are far";
+  EXPECT_TRUE(moves({.arrived = 10, .open = 3, .steady_steps = 2}));
+  RowBesideOthers high = edge;
+  high.last_z = 1;
+  EXPECT_TRUE(moves(high));
+  EXPECT_TRUE(moves_last({{0, high}, {10, edge}}));
+  EXPECT_FALSE(moves_last({{0, high}, {11, edge}}));
 }
 
 }  // namespace

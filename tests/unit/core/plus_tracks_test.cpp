@@ -47,7 +47,8 @@ std::vector<Voxel> predicted(const Box& box, const Tracks& tracks,
   const Ground ground(with_floor.scan, config);
   LowVoxels low(box.scan, ground);
   const ScanMasks none(box.scan.occupied.size());
-  ArrivalClasses classes{none, none, none, none, none, kind.standing ? box.scan.occupied : none};
+  ArrivalClasses classes{none, none, none, none, none, none, none};
+  if (kind.standing) classes.standing = box.scan.occupied;
   tracks.add_seeds(box.scan, low, tick, classes);
   EXPECT_EQ(classes.seeds, classes.fresh);
   std::vector<Voxel> seeds;
