@@ -129,7 +129,7 @@ void plus_stage(benchmark::State& state, StagedScans& staged, ThreadPool& pool) 
       const auto motion = run(PlusStage::kObjects, [&] {
         auto found = hmm_mos_plus::find_components(inputs.scan, classes, *ground, low, config);
         tracks.follow(inputs.scan, found, tick);
-        attachments.judge(inputs.scan, classes, low, s.k, found);
+        attachments.judge(inputs.scan, classes, low, s.k, {map, memory, s.k}, found);
         return hmm_mos_plus::motion_of(inputs.scan, classes, low, std::move(found));
       });
       auto moving = motion.objects;

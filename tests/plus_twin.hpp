@@ -330,12 +330,20 @@ class PlusTwin final : public Method {
     for (Component& component : components) {
       if (!component.moves) continue;
       double voxels = 0, arrived = 0, settled = 0;
+      int since = scan.tick;
+      SetOf all;
       for (const Seen& seen : seen_) {
         if (gap_between(seen.voxels, component.voxels) > reach) continue;
+        since = std::min(since, seen.tick);
+        all.insert(seen.voxels.begin(), seen.voxels.end());
         voxels += static_cast<double>(seen.voxels.size());
         arrived += seen.arrived, settled += seen.settled_beside;
       }
-      const bool is_attached = settled > c_.max_settled_share * voxels && arrived < 0.8 * voxels;
+      const bool stays = scan.tick - since >= 2 && settled > 0.05 * voxels &&
+                         arrived < 0.9 * voxels &&
+                         left_in_box(all) < 0.1 * static_cast<double>(component.voxels.size());
+      const bool is_attached =
+          stays || (settled > c_.max_settled_share * voxels && arrived < 0.8 * voxels);
       component.moves =
           component.steady_steps >= 2 ||
           !(is_attached || is_doubtful(scan, component.voxels) || is_flat(scan, component.voxels));
@@ -356,6 +364,17 @@ class PlusTwin final : public Method {
     return open > 0.2 * arrived && std::ranges::all_of(seen_, [&](const Seen& seen) {
              return are_level(seen.voxels) || gap_between(seen.voxels, voxels) > reach;
            });
+  }
+
+  /// How many voxels were left in the last second within the box around others.
+  double left_in_box(const SetOf& voxels) const {
+    double count = 0;
+    for (const auto& [v, cell] : map_) {
+      const bool was_left =
+          is_known(&cell) && cell.state == kFree && cell.left && tick_ - cell.left_at <= 10;
+      if (was_left && gap_between({v}, voxels) <= 0) ++count;
+    }
+    return count;
   }
 
   /// New, and came into view, or is small.

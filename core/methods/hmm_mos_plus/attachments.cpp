@@ -13,6 +13,11 @@ constexpr std::uint32_t kSeenTicks = 10;
 /// An object that moves arrived by this share or more. The rest came into view or is one with what
 /// it touches.
 constexpr double kArrivedShare = 0.8;
+/// What has been near for so long leaves voxels behind when it moves, a tenth as many as it has.
+constexpr std::uint32_t kLeavesTicks = 2;
+constexpr double kLeftShare = 0.1;
+/// Limits for what left fewer: settled voxels beside it per voxel, and the share that arrived.
+constexpr double kStayingSettledShare = 0.05, kStayingArrivedShare = 0.9;
 /// What is new and arrived by less came into view.
 constexpr double kNewArrivedShare = 0.3;
 /// A flat thing is seen to be so by more than this share of what arrived.
@@ -34,6 +39,33 @@ bool are_within(int reach, const Box& a, const Box& b) {
   return a.low.x - b.high.x <= reach && b.low.x - a.high.x <= reach &&
          a.low.y - b.high.y <= reach && b.low.y - a.high.y <= reach &&
          a.low.z - b.high.z <= reach && b.low.z - a.high.z <= reach;
+}
+
+Box united(const Box& a, const Box& b) {
+  return {
+      {std::min(a.low.x, b.low.x), std::min(a.low.y, b.low.y), std::min(a.low.z, b.low.z)},
+      {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
+}
+
+/// Counts the voxels in a box that were left in the last second.
+std::size_t left_in(const Box& box, const RememberedMap& map) {
+  std::size_t count = 0;
+  const BlockIndex low = block_of(box.low), high = block_of(box.high);
+  for (BlockIndex at = low; at.z <= high.z; ++at.z) {
+    for (at.y = low.y; at.y <= high.y; ++at.y) {
+      for (at.x = low.x; at.x <= high.x; ++at.x) {
+        const auto past = map.past_at(at);
+        if (!past) continue;
+        for_each_cell(past->history.left_within(past->known.free, kSeenTicks, past->tick),
+                      [&](std::uint32_t cell) {
+                        const Voxel v = voxel_at(at, cell);
+                        const Box own{v, v};
+                        count += are_within(0, box, own) ? 1U : 0U;
+                      });
+      }
+    }
+  }
+  return count;
 }
 
 }  // namespace
@@ -64,15 +96,29 @@ Attachments::Seen Attachments::look_at(const VoxelizedScan& scan, const ArrivalC
   return seen;
 }
 
-bool Attachments::is_attached(const Seen& component) const {
-  double voxels = 0, arrived = 0, settled = 0;
+Attachments::Near Attachments::near(const Seen& component) const {
+  Near near{.box = component.box, .since = component.at};
   for (const Seen& seen : seen_) {
     if (!are_within(reach_, seen.box, component.box)) continue;
-    voxels += static_cast<double>(seen.voxels);
-    arrived += static_cast<double>(seen.arrived);
-    settled += static_cast<double>(seen.settled);
+    near.box = united(near.box, seen.box);
+    near.voxels += static_cast<double>(seen.voxels);
+    near.arrived += static_cast<double>(seen.arrived);
+    near.settled += static_cast<double>(seen.settled);
+    near.since = std::min(near.since, seen.at);
   }
-  return settled > max_settled_share_ * voxels && arrived < kArrivedShare * voxels;
+  return near;
+}
+
+bool Attachments::is_attached(const Seen& component, const RememberedMap& map) const {
+  const Near all = near(component);
+  if (all.settled > max_settled_share_ * all.voxels && all.arrived < kArrivedShare * all.voxels) {
+    return true;
+  }
+  return component.at - all.since >= kLeavesTicks &&
+         all.settled > kStayingSettledShare * all.voxels &&
+         all.arrived < kStayingArrivedShare * all.voxels &&
+         static_cast<double>(left_in(all.box, map)) <
+             kLeftShare * static_cast<double>(component.voxels);
 }
 
 /// Whether nothing was near before that tells more. In the beginning everything comes into view.
@@ -98,7 +144,8 @@ bool Attachments::is_flat(const Seen& component) const {
 }
 
 void Attachments::judge(const VoxelizedScan& scan, const ArrivalClasses& classes, LowVoxels& low,
-                        std::uint32_t at, std::vector<Component>& components) {
+                        std::uint32_t at, const RememberedMap& map,
+                        std::vector<Component>& components) {
   while (!seen_.empty() && at - seen_.front().at > kSeenTicks) seen_.pop_front();
   const std::size_t before = seen_.size();
   for (const Component& component : components) {
@@ -110,7 +157,7 @@ void Attachments::judge(const VoxelizedScan& scan, const ArrivalClasses& classes
   for (Component& component : components) {
     if (!component.moves) continue;
     const Seen& seen = seen_[next++];
-    const bool stands = is_attached(seen) || is_doubtful(seen) || is_flat(seen);
+    const bool stands = is_attached(seen, map) || is_doubtful(seen) || is_flat(seen);
     component.moves = component.steady_steps >= kSteadySteps || !stands;
   }
 }

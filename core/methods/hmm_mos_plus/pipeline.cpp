@@ -97,7 +97,7 @@ void Pipeline::judge(HeldScan& held) {
   const Motion motion = timed(record, "objects", [&] {
     std::vector<Component> found = find_components(scan, classes, *ground, low, config_);
     tracks_.follow(scan, found, held.tick);
-    attachments_.judge(scan, classes, low, held.tick.at, found);
+    attachments_.judge(scan, classes, low, held.tick.at, remembered(), found);
     return motion_of(scan, classes, low, std::move(found));
   });
   const StageClock clock(record, "labels");

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "core/methods/hmm_mos_plus/attachments.hpp"
@@ -14,6 +16,28 @@ struct RowBesideOthers {
   int steady_steps = 0;
   bool low = false;
   int last_z = 0;  ///< of its last voxel
+  int left = 0;    ///< voxels of it that were left
+};
+
+/// A map in which some voxels of the row were occupied and are free.
+struct MapOfLeft {
+  explicit MapOfLeft(int left) {
+    VoxelSet row, elsewhere;
+    elsewhere.masks[elsewhere.insert(block_of({100, 0, 0}))].set(cell_of({100, 0, 0}));
+    for (int x = 0; x < left; ++x)
+      row.masks[row.insert(block_of({x, 0, 0}))].set(cell_of({x, 0, 0}));
+    VoxelList observed{row.blocks, row.masks};
+    for (std::uint32_t k = 0; k < 10; ++k) {
+      const std::array<const VoxelSet*, 1> sources = {k < 5 && left > 0 ? &row : &elsewhere};
+      map.update(observed, sources, Eigen::Vector3d::Zero(), k, pool);
+    }
+  }
+
+  RememberedMap remembered() { return {map, memory, 9}; }
+
+  ThreadPool pool{1};
+  BlockMemory memory;
+  hmm_mos::VoxelMap map{Config{}.map, grid_around(Eigen::Vector3d::Zero(), 0.25), &memory};
 };
 
 /// Whether a row moves in the last of some scans, each with its tick.
@@ -52,7 +76,8 @@ bool moves_last(const std::vector<std::pair<std::uint32_t, RowBesideOthers>>& sc
     const Ground ground(scan, config);
     LowVoxels low(scan, ground);
     std::vector<Component> components = {component};
-    attachments.judge(scan, classes, low, at, components);
+    MapOfLeft map(row.left);
+    attachments.judge(scan, classes, low, at, map.remembered(), components);
     moves = components.front().moves;
   }
   return moves;
@@ -84,6 +109,17 @@ TEST(PlusAttachments, AreToldByWhatWasNearInTheLastSecond) {
   EXPECT_TRUE(moves_last({{0, arrived}}));
   EXPECT_FALSE(moves_last({{0, standing}, {10, arrived}}));
   EXPECT_TRUE(moves_last({{0, standing}, {11, arrived}}));
+}
+
+TEST(PlusAttachments, LeaveNothingBehind) {
+  const RowBesideOthers beside{.arrived = 8, .settled = 1};
+  EXPECT_TRUE(moves_last({{0, beside}, {1, beside}})) << "it had no time to leave";
+  EXPECT_FALSE(moves_last({{0, beside}, {2, beside}}));
+  const RowBesideOthers gone{.arrived = 8, .settled = 1, .left = 1};
+  EXPECT_TRUE(moves_last({{0, beside}, {2, gone}}));
+  const RowBesideOthers alone{.arrived = 8, .settled = 0}, whole{.arrived = 9, .settled = 1};
+  EXPECT_TRUE(moves_last({{0, alone}, {2, alone}}));
+  EXPECT_TRUE(moves_last({{0, whole}, {2, whole}}));
 }
 
 TEST(PlusAttachments, WaitForASecondScanWhereTheyCameIntoView) {
