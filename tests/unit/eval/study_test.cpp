@@ -489,7 +489,8 @@ TEST(StudyScoring, IsNamedInEveryTable) {
   EXPECT_THAT(render(answer, Format::kText),
               AllOf(HasSubstr("protocol mapmos: pooled; "), HasSubstr("(1 to 20 m)")));
   EXPECT_THAT(render(answer, Format::kLatex),
-              HasSubstr("\\multicolumn{8}{l}{protocol mapmos (1 to 20 m)}"));
+              HasSubstr("\\multicolumn{8}{l}{protocol mapmos (1 to 20 m); INCOMPLETE: 3 cells are "
+                        "missing}"));
   EXPECT_THAT(render(answer, Format::kCsv),
               AllOf(HasSubstr("state,protocol,min_range_m,max_range_m,iou"),
                     HasSubstr(",done,mapmos,1,20,0.5,")));
