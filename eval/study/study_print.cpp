@@ -260,6 +260,7 @@ Sheet records_of(const StudyPlan& plan) {
   for (const PlannedCell& planned : plan.cells) {
     const StudyCell& cell = planned.cell;
     const CellNumbers& numbers = planned.numbers;
+    sheet.row_standing.push_back({numbers.simulated, "", numbers.doubts});
     sheet.rows.push_back(
         {cell.key, cell.data->name, cell.data->group, cell.sequence, cell.method->name,
          cell.odometry, cell.axis == nullptr ? "" : cell.axis->name, cell.value,

@@ -96,6 +96,9 @@ TEST_F(Exec, IsMeasuredByTheCpuOfItsProcesses) {
   const auto [busy_s, taken_s] =
       cost_of("works", "i=0; while [ $i -lt 1000000 ]; do i=$((i+1)); done; ");
   EXPECT_GT(busy_s, sleeping_s + 0.1);
+  const cli::Answer profile =
+      cli::run({"profile", folder_ / "room", "--method", "exec:" + client()});
+  EXPECT_THAT(profile.out, HasSubstr("CPU is without the program, which took 0."));
   const cli::Answer accepted =
       cli::run({"compare", folder_ / "base", folder_ / "sleeps", "--accept"});
   ASSERT_EQ(accepted.exit_code, 0) << accepted.err;

@@ -500,6 +500,27 @@ TEST(StudyScoring, IsNamedInEveryTable) {
   EXPECT_EQ(json.at("max_range_m"), 20.0);
 }
 
+TEST(StudyTable, SaysADoubtOncePerKindAndAtItsRows) {
+  const TempFolder folder;
+  const Study study = parse_study(without_disturbances(), "s.yaml");
+  StudyPlan plan = plan_study(study, folder.path());
+  for (PlannedCell& planned : plan.cells) mark_done(planned, 0.5, 1);
+  for (const std::size_t near : {1U, 3U}) {
+    ASSERT_EQ(plan.cells[near].cell.label(), "near");
+    plan.cells[near].numbers.doubts = {fmt::format("{} scans are odd", near)};
+  }
+  const StudyTable table = gather(plan);
+  ASSERT_EQ(table.doubts.size(), 1U);
+  EXPECT_THAT(table.doubts[0], testing::EndsWith(": 1 scans are odd"));
+  const Answer answer = study_answer(plan, table);
+  const std::string latex = render(answer, Format::kLatex);
+  EXPECT_THAT(latex, testing::ContainsRegex("\nhmm-mos & [^$]*\nnear & [^\n]*\\$\\^\\{a\\}\\$"));
+  EXPECT_THAT(latex, AllOf(HasSubstr("{$^{a}$ 1 scans are odd}"),
+                           testing::Not(HasSubstr("3 scans are odd"))));
+  EXPECT_THAT(render(answer, Format::kCsv),
+              testing::ContainsRegex("\n[^\n]*near[^\n]*published numbers; 3 scans are odd\n"));
+}
+
 TEST(StudyTable, SaysWhyAMeanIsUndefined) {
   const TempFolder folder;
   const Study study = parse_study(without_disturbances(), "s.yaml");
