@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -10,16 +12,18 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
 
 namespace mosbench {
 namespace {
 
-/// Whether a file is JSON that commands answer with, not what they read.
-bool is_answer_json(const std::filesystem::path& file, const std::string& bytes) {
+/// Whether a file is JSON as commands answer it, to the last blank, and not what they read.
+bool is_answer_json(const std::filesystem::path& file) {
   try {
+    const std::string bytes = read_file(file);
     const nlohmann::ordered_json json = parse_json(bytes, file);
-    return !json.contains("format") && !json.contains("tuned_on");
+    return !json.contains("format") && json_text(json) == bytes;
   } catch (const DataError&) {
     return false;
   }
@@ -28,9 +32,10 @@ bool is_answer_json(const std::filesystem::path& file, const std::string& bytes)
 /// Whether a file may be one that mosbench wrote in this format. Of text it cannot tell more than
 /// that it is text.
 bool is_written(const std::filesystem::path& file, Format format) {
-  constexpr std::size_t kHead = 4096;
-  const std::string bytes = read_file(file);
-  const std::string_view head = std::string_view(bytes).substr(0, kHead);
+  std::string head(4096, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
   const bool names_mosbench = head.find("mosbench") != head.npos;
   switch (format) {
     case Format::kPng:
@@ -40,9 +45,9 @@ bool is_written(const std::filesystem::path& file, Format format) {
     case Format::kJunit:
       return head.starts_with("<?xml") && names_mosbench;
     case Format::kJson:
-      return is_answer_json(file, bytes);
+      return is_answer_json(file);
     default:
-      return head.find('\0') == head.npos && (!head.starts_with('{') || format == Format::kText);
+      return head.find('\0') == head.npos && !head.starts_with('{');
   }
 }
 
@@ -50,8 +55,9 @@ void refuse_foreign(const std::filesystem::path& file, Format written) {
   std::error_code ignored;
   const bool is_file = std::filesystem::is_regular_file(file, ignored);
   if (!is_file || std::filesystem::file_size(file, ignored) == 0) return;
-  const bool has_ending = file.has_extension() && format_of_name(file) != written;
-  if (!has_ending && is_written(file, written)) return;
+  constexpr std::array<std::string_view, 3> kOnlyRead = {".yaml", ".yml", ".tum"};
+  const bool is_read = std::ranges::find(kOnlyRead, file.extension().string()) != kOnlyRead.end();
+  if (!is_read && is_written(file, written)) return;
   throw UsageError(fmt::format("{}: is there and no {} that mosbench wrote, expected another name",
                                file.string(), format_names()[static_cast<std::size_t>(written)]));
 }

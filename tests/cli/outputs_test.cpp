@@ -65,11 +65,13 @@ TEST_F(Outputs, ReplaceThoseOfBeforeAndNothingElse) {
   };
   const std::vector<std::string> rank = {"rank", run}, compare = {"compare", run, run};
   folder_.write("page.html", "<html>mine</html>");
+  folder_.write("settings.json", "{\"max_range_m\": 30}");
   folder_.write("job.yaml", "name: job\n");
   folder_.write("binary.csv", std::string("a\0b", 3));
   const std::string before = read_file(result);
   for (const auto& [words, file] : {std::pair{rank, result},
                                     {compare, result},
+                                    {rank, folder_ / "settings.json"},
                                     {report_to("x"), folder_ / "page.html"},
                                     {rank, folder_ / "page.html"},
                                     {rank, folder_ / "job.yaml"},
