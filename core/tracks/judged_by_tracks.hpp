@@ -16,8 +16,8 @@ inline void check_window(double window_s, int delay_scans) {
     throw std::invalid_argument("track_window_s: is less than 1 s, expected 0 or 1 to 3600");
   }
   if (window_s > 0 && delay_scans > 0) {
-    throw std::invalid_argument(
-        "delay_scans: is set beside track_window_s, expected 0 of one of them");
+    throw std::invalid_argument("delay_scans: is set beside track_window_s, expected delay=" +
+                                std::to_string(delay_scans) + ", which judges no whole tracks");
   }
 }
 

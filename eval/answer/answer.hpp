@@ -54,6 +54,13 @@ struct Column {
   std::string key{};            ///< of JSON and CSV; by default made of the name
 };
 
+/// What keeps the numbers of an answer from being compared with others. Every format shows it.
+struct Standing {
+  bool simulated = false;
+  std::string origin{};               ///< of simulated data, "scene room, seed 5"; empty: not told
+  std::vector<std::string> doubts{};  ///< "INCOMPLETE: 2 scans are not counted"
+};
+
 /// A table with the lines above and below it. An empty row is a line across. Without columns there
 /// are the lines alone.
 struct Sheet {
@@ -63,23 +70,25 @@ struct Sheet {
   std::vector<std::vector<Cell>> rows{};
   std::vector<std::string> notes{};
   std::string caption{};  ///< one line that LaTeX and HTML print with the table
-};
-
-/// What keeps the numbers of an answer from being compared with others. Every format shows it.
-struct Standing {
-  bool simulated = false;
-  std::string origin{};               ///< of simulated data, "scene room, seed 5"; empty: not told
-  std::vector<std::string> doubts{};  ///< "INCOMPLETE: 2 scans are not counted"
+  /// Of each row alone, so many as rows; none: that of the answer is of all.
+  std::vector<Standing> row_standing{};
 };
 
 /// Returns a sentence for each.
 std::vector<std::string> sentences(const Standing& standing);
+/// Returns what sentences of one kind have in common.
+std::string without_digits(std::string sentence);
 
 /// One thing that was checked.
 struct CheckResult {
+  enum class Severity : std::uint8_t {
+    kFailure,
+    kWarning,
+    kNotMade  ///< the message says why it could not be
+  };
   std::string name;            ///< the same in every run: "room"
-  std::string title, message;  ///< what a pull request says of a failed one; empty of others
-  bool was_made = true;        ///< false: the message says why it could not be
+  std::string title, message;  ///< what a pull request says of it; empty of one that passed
+  Severity severity = Severity::kFailure;
   bool passed() const { return message.empty(); }
 };
 

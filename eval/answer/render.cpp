@@ -138,9 +138,8 @@ std::string csv_of(const Sheet& sheet, const std::optional<Standing>& standing) 
   }
   if (standing) cells.emplace_back("standing");
   std::string text = csv_row(cells);
-  const std::string mark =
-      standing ? fmt::format("{}", fmt::join(sentences(*standing), "; ")) : std::string();
-  for (const std::vector<Cell>& row : sheet.rows) {
+  for (std::size_t r = 0; r < sheet.rows.size(); ++r) {
+    const std::vector<Cell>& row = sheet.rows[r];
     if (row.empty()) continue;
     cells.clear();
     for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
@@ -154,7 +153,10 @@ std::string csv_of(const Sheet& sheet, const std::optional<Standing>& standing) 
         cells.push_back(is_known ? csv_number(*(spread->*end), sheet.columns[c]) : "");
       }
     }
-    if (standing) cells.push_back(mark);
+    if (standing) {
+      const Standing& own = sheet.row_standing.empty() ? *standing : sheet.row_standing.at(r);
+      cells.push_back(fmt::format("{}", fmt::join(sentences(own), "; ")));
+    }
     text += csv_row(cells);
   }
   return text;
@@ -229,10 +231,9 @@ std::string json_of(const Answer& answer) {
 
 std::string text_of(const Answer& answer, std::size_t columns) {
   std::vector<Sheet> sheets = shown_sheets(answer);
-  const std::vector<std::string> marks = marks_of(answer);
-  if (!marks.empty()) {
-    std::vector<std::string>& lead = sheets.front().lead;
-    lead.insert(lead.end(), marks.begin(), marks.end());
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    const std::vector<std::string> marks = marks_at(answer, i);
+    sheets[i].lead.insert(sheets[i].lead.end(), marks.begin(), marks.end());
   }
   std::string text;
   const auto add = [&](const std::string& part) {
@@ -257,8 +258,10 @@ std::string github_of(const Answer& answer) {
   std::string text = text_of(answer, 0);
   for (const CheckResult& each : answer.checks) {
     if (each.passed()) continue;
-    text += fmt::format("::error title={}::{}\n", workflow_text(each.title, ":,"),
-                        workflow_text(each.message));
+    const bool warns = each.severity == CheckResult::Severity::kWarning;
+    text += fmt::format("::{} title={}::{}\n", warns ? "warning" : "error",
+                        workflow_text(each.title, ":,"),
+                        workflow_text(message_of(each, marks_of(answer))));
   }
   return text;
 }
@@ -286,21 +289,6 @@ Cell or_undefined(const std::optional<double>& value) {
 }
 
 Cell or_missing(const std::optional<double>& value) { return value ? Cell(*value) : Cell(); }
-
-std::vector<std::string> sentences(const Standing& standing) {
-  std::vector<std::string> texts;
-  if (standing.simulated) {
-    texts.push_back(
-        fmt::format("SIMULATED data{}: not comparable with published numbers",
-                    standing.origin.empty() ? "" : fmt::format(" ({})", standing.origin)));
-  }
-  texts.insert(texts.end(), standing.doubts.begin(), standing.doubts.end());
-  return texts;
-}
-
-std::vector<std::string> marks_of(const Answer& answer) {
-  return answer.standing ? sentences(*answer.standing) : std::vector<std::string>();
-}
 
 std::vector<Sheet> shown_sheets(const Answer& answer) {
   std::vector<Sheet> sheets = answer.sheets;

@@ -27,6 +27,11 @@ void check_name(const std::filesystem::path& file, Format written);
 
 /// Returns what makes the numbers of an answer doubtful, a sentence each.
 std::vector<std::string> marks_of(const Answer& answer);
+/// Returns those that stand with one of its sheets: all with the first, and with other tables that
+/// their data are simulated.
+std::vector<std::string> marks_at(const Answer& answer, std::size_t sheet);
+/// Returns the message of a check with the first two of them in brackets, as it is shown alone.
+std::string message_of(const CheckResult& check, const std::vector<std::string>& marks);
 /// Returns its sheets, or an empty one where there is none and something to say above it.
 std::vector<Sheet> shown_sheets(const Answer& answer);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 #include <utility>
 
@@ -53,15 +54,65 @@ std::string replaced(std::string_view text, Replacements by) {
   return line;
 }
 
+/// What is told of a whole table; doubts about single rows stand with these.
+Lines table_marks(const Answer& answer, const Sheet& sheet) {
+  if (sheet.row_standing.empty() || !answer.standing) return marks_of(answer);
+  return sentences({answer.standing->simulated, answer.standing->origin});
+}
+
+/// What is doubtful about rows, one foot line per kind with the letter that its rows bear.
+class Footnotes {
+ public:
+  explicit Footnotes(const Sheet& sheet) {
+    for (const Standing& row : sheet.row_standing) {
+      std::string letters;
+      for (const std::string& doubt : row.doubts) {
+        const char letter = letter_of(doubt);
+        if (letters.find(letter) == letters.npos) letters += letter;
+      }
+      std::ranges::sort(letters);
+      marks_.push_back(letters.empty() ? "" : fmt::format("$^{{{}}}$", fmt::join(letters, ",")));
+    }
+  }
+  std::string mark(std::size_t row) const { return marks_.empty() ? "" : marks_.at(row); }
+  Lines lines() const {
+    Lines lines;
+    for (std::size_t i = 0; i < texts_.size(); ++i) {
+      lines.push_back(fmt::format("$^{{{}}}$ {}", letter_of(i), latex_text(texts_[i])));
+    }
+    return lines;
+  }
+
+ private:
+  /// The last letter is of all that have none.
+  static char letter_of(std::size_t kind) {
+    return static_cast<char>('a' + std::min<std::size_t>(kind, 25));
+  }
+  char letter_of(const std::string& doubt) {
+    const std::string kind = without_digits(doubt);
+    const auto found = static_cast<std::size_t>(std::ranges::find(kinds_, kind) - kinds_.begin());
+    if (found == kinds_.size()) {
+      kinds_.push_back(kind);
+      texts_.push_back(doubt);
+    }
+    return letter_of(found);
+  }
+
+  Lines marks_, kinds_, texts_;
+};
+
 /// A tabular. What must stay with the numbers is printed below them, and a dagger leads there.
 std::string latex_table(const Sheet& sheet, const Lines& marks) {
   const ShownTable table = shown_table(sheet);
+  const Footnotes footnotes(sheet);
   std::string text = "\\begin{tabular}{";
   for (const ShownTable::Head& head : table.heads) text += head.is_left ? 'l' : 'r';
   text += "}\n\\hline\n" + joined(titles_of(table), latex_text, " & ");
   text += fmt::format("{} \\\\\n\\hline\n", marks.empty() ? "" : "$^\\dagger$");
-  for (const Lines& row : table.rows) {
-    text += row.empty() ? "\\hline\n" : joined(row, latex_text, " & ") + " \\\\\n";
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    const Lines& row = table.rows[r];
+    text +=
+        row.empty() ? "\\hline\n" : joined(row, latex_text, " & ") + footnotes.mark(r) + " \\\\\n";
   }
   text += "\\hline\n";
   const auto add_foot = [&](const std::string& line) {
@@ -70,6 +121,7 @@ std::string latex_table(const Sheet& sheet, const Lines& marks) {
   };
   if (!sheet.caption.empty()) add_foot(latex_text(sheet.caption));
   for (const std::string& mark : marks) add_foot("$^\\dagger$ " + latex_text(mark));
+  std::ranges::for_each(footnotes.lines(), add_foot);
   return text + "\\end{tabular}\n";
 }
 
@@ -128,14 +180,13 @@ std::string html_of(const Sheet& sheet, const Lines& marks) {
   return text;
 }
 
-/// All sheets, the first with what standing says.
+/// All sheets with their marks.
 std::string joined_sheets(const Answer& answer, std::string (*shown)(const Sheet&, const Lines&),
                           const char* between) {
   std::string text;
   const std::vector<Sheet> sheets = shown_sheets(answer);
-  for (const Sheet& sheet : sheets) {
-    const bool is_first = &sheet == sheets.data();
-    text += (text.empty() ? "" : between) + shown(sheet, is_first ? marks_of(answer) : Lines());
+  for (std::size_t i = 0; i < sheets.size(); ++i) {
+    text += (text.empty() ? "" : between) + shown(sheets[i], marks_at(answer, i));
   }
   return text;
 }
@@ -153,12 +204,13 @@ std::string xml_text(std::string_view text) {
   return line;
 }
 
-std::string test_case(const CheckResult& check) {
+std::string test_case(const CheckResult& check, const Lines& marks) {
   const std::string head =
       fmt::format("<testcase classname=\"mosbench\" name=\"{}\"", xml_text(check.name));
   if (check.passed()) return head + "/>\n";
-  const std::string message = xml_text(check.message);
-  const char* tag = check.was_made ? "failure" : "error";
+  constexpr std::array kTags = {"failure", "skipped", "error"};
+  const std::string message = xml_text(message_of(check, marks));
+  const char* tag = kTags.at(static_cast<std::size_t>(check.severity));
   return fmt::format("{}><{} message=\"{}: {}\">{}</{}></testcase>\n", head, tag,
                      xml_text(check.title), message, message, tag);
 }
@@ -199,7 +251,7 @@ std::string latex_of(const Answer& answer) {
   for (const Sheet& sheet : shown_sheets(answer)) {
     if (!text.empty()) text += '\n';
     text += latex_comments({sheet.title}) + latex_comments(sheet.lead);
-    if (!sheet.columns.empty()) text += latex_table(sheet, marks);
+    if (!sheet.columns.empty()) text += latex_table(sheet, table_marks(answer, sheet));
     text += latex_comments(sheet.notes);
   }
   if (std::ranges::all_of(answer.sheets, [](const Sheet& each) { return each.columns.empty(); })) {
@@ -234,17 +286,20 @@ std::string junit_of(const Answer& answer) {
   if (answer.checks.empty()) {
     throw UsageError("--as junit: the answer has no checks, expected another format");
   }
-  const auto missing = std::ranges::count(answer.checks, false, &CheckResult::was_made);
-  const auto failed = std::ranges::count(answer.checks, false, &CheckResult::passed) - missing;
+  std::array<std::size_t, 3> counts{};  // by severity
+  for (const CheckResult& check : answer.checks) {
+    if (!check.passed()) ++counts.at(static_cast<std::size_t>(check.severity));
+  }
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n"
-      "<testsuite name=\"mosbench\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"0\">\n",
-      answer.checks.size(), failed, missing);
-  if (const Lines marks = marks_of(answer); !marks.empty()) {
+      "<testsuite name=\"mosbench\" tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\">\n",
+      answer.checks.size(), counts[0], counts[2], counts[1]);
+  const Lines marks = marks_of(answer);
+  if (!marks.empty()) {
     text += fmt::format("<properties><property name=\"standing\" value=\"{}\"/></properties>\n",
                         joined(marks, xml_text, "; "));
   }
-  for (const CheckResult& check : answer.checks) text += test_case(check);
+  for (const CheckResult& check : answer.checks) text += test_case(check, marks);
   text += "<system-out>\n";
   for (const Sheet& sheet : answer.sheets) {
     std::istringstream lines(text_of(sheet));

@@ -80,6 +80,15 @@ void refuse_unknown_command(const std::vector<std::string>& arguments) {
   if (!arguments.front().starts_with('-')) check_command_name(arguments.front());
 }
 
+/// The parser takes "--flag=" for "--flag", or the next word for its value.
+void refuse_empty_values(const std::vector<std::string>& arguments) {
+  for (const std::string& argument : arguments) {
+    if (argument == "--") return;
+    if (!argument.starts_with("--") || argument.find('=') != argument.size() - 1) continue;
+    throw UsageError(argument + ": is empty, expected a value");
+  }
+}
+
 /// Returns a hint to --set delay_scans for --delay; nothing for what begins no name of a setting.
 std::string as_setting(const CLI::App& command, std::string flag) {
   if (command.get_option_no_throw("--set") == nullptr) return {};
@@ -127,7 +136,7 @@ Printed printed(const Answer& answer, const std::string& asked, std::size_t colu
   const Format format = asked.empty() ? named.value_or(answer.usual) : format_named(asked);
   Printed result{"", answer.exit_code, format == Format::kText || format == Format::kGithub};
   if (in_file) {
-    check_name(*answer.file, format);
+    check_output(*answer.file, format);
     write_output(*answer.file, render(answer, format));
     result.bytes = fmt::format("wrote {}", answer.file->string());
     if (answer.standing) {
@@ -180,11 +189,13 @@ std::string commands_with_odometry(const CLI::App& command, std::vector<std::str
 
 /// Returns the line in the words of today, and says it on stderr where it was another.
 std::vector<std::string> without_old_words(const CLI::App& app, std::vector<std::string> typed) {
-  const auto takes_value = [&](const std::string& command, const std::string& flag) {
+  const auto takes_value = [&](const std::string& command,
+                               const std::string& flag) -> std::optional<bool> {
     const auto named =
         app.get_subcommands([&](const CLI::App* row) { return row->get_name() == command; });
     const CLI::Option* option = named.empty() ? nullptr : named.front()->get_option_no_throw(flag);
-    return option != nullptr && option->get_items_expected_max() > 0;
+    if (option == nullptr) return std::nullopt;
+    return option->get_items_expected_max() > 0;
   };
   std::vector<std::string> now = in_new_words(typed, takes_value);
   if (now != typed) tell(fmt::format("the next release knows only the words{}", typed_line(now)));
@@ -201,6 +212,7 @@ const CLI::App& chosen(const Program& program) {
 /// or version was asked for.
 const CLI::App& parse(Program& program, std::vector<std::string> arguments) {
   refuse_unknown_command(arguments);
+  refuse_empty_values(arguments);
   try {
     std::ranges::reverse(arguments);  // as CLI11 expects them
     program.app.parse(std::move(arguments));
@@ -214,11 +226,8 @@ const CLI::App& parse(Program& program, std::vector<std::string> arguments) {
   return chosen(program);
 }
 
-}  // namespace
-
-Printed answer_to(std::vector<std::string> arguments, std::size_t columns) {
-  Program program;
-  arguments = without_old_words(program.app, std::move(arguments));
+Printed answer_to_new_words(Program& program, const std::vector<std::string>& arguments,
+                            std::size_t columns) {
   const CLI::App* command = nullptr;
   try {
     command = &parse(program, arguments);
@@ -234,6 +243,22 @@ Printed answer_to(std::vector<std::string> arguments, std::size_t columns) {
   } catch (const MissingPoses& error) {
     const std::string commands = commands_with_odometry(*command, arguments);
     throw DataError(error.what() + (commands.empty() ? "" : ":" + commands));
+  }
+}
+
+}  // namespace
+
+Printed answer_to(std::vector<std::string> arguments, std::size_t columns) {
+  Program program;
+  arguments = without_old_words(program.app, std::move(arguments));
+  try {
+    return answer_to_new_words(program, arguments, columns);
+  } catch (...) {
+    const bool compares = !arguments.empty() && arguments.front() == "compare";
+    if (compares) {
+      keep_failure_of_compare({arguments.begin() + 1, arguments.end()}, current_failure());
+    }
+    throw;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "eval/answer/answer.hpp"
 
@@ -33,6 +34,10 @@ struct Failure {
 
 /// Returns that of the exception that is being handled.
 Failure current_failure();
+
+/// Writes that nothing was judged to the files which a line of `compare` names, as far as it is
+/// understood: what they hold of the line before must not be taken for the answer to this one.
+void keep_failure_of_compare(std::vector<std::string> arguments, const Failure& failure);
 
 /// All commands, in the order in which --help shows them.
 std::span<const Command> commands();

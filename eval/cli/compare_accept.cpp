@@ -71,10 +71,14 @@ Answer accept_newer(const CompareFlags& options) {
   if (options.accept != "true") {
     why = {options.accept, fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))};
   }
-  accept_baseline(newer, options.baseline, why,
-                  options.sequences.empty() ? Others::kRemove : Others::kKeep);
-  answer.text += fmt::format("accepted {} as {}{}\n", options.newer.string(),
-                             options.baseline.string(), why ? ": " + why->why : "");
+  const bool changed = accept_baseline(newer, options.baseline, why,
+                                       options.sequences.empty() ? Others::kRemove : Others::kKeep);
+  answer.text += fmt::format(
+      fmt::runtime(changed ? "accepted {} as {}{}\n" : "{} is in {} already: nothing changed{}\n"),
+      options.newer.string(), options.baseline.string(),
+      !why      ? ""
+      : changed ? ": " + why->why
+                : ", and no reason is kept");
   return answer;
 }
 

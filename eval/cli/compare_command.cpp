@@ -47,11 +47,13 @@ Answer answer_of(const ResultSet& baseline, const ResultSet& newer, const Paired
                                  {"new", missing_predictions(newer)}};
   json["unlike"] = unlike;
   json["added_settings"] = paired.added_settings;
+  std::vector<CheckResult> checks = gate_checks(result);
+  checks.push_back({"alike", "Runs are not alike", unlike, CheckResult::Severity::kWarning});
   return {.exit_code = result.passed() ? 0 : 1,
           .standing = standing_of(baseline, "baseline", newer, "new"),
           .sheets = std::move(sheets),
           .json = json_text(json),
-          .checks = gate_checks(result)};
+          .checks = std::move(checks)};
 }
 
 Answer compare(const CompareFlags& options) {
@@ -76,7 +78,7 @@ Answer refusal(const Failure& failure) {
           .failure = failure.message,
           .sheets = {{.title = kTitle, .notes = {failure.message}}},
           .json = json_text({{"passed", false}, {"error", failure.message}}),
-          .checks = {{"gate", kTitle, failure.message, false}}};
+          .checks = {{"gate", kTitle, failure.message, CheckResult::Severity::kNotMade}}};
 }
 
 Answer compare_or_refuse(CompareFlags& options) {
@@ -88,10 +90,33 @@ Answer compare_or_refuse(CompareFlags& options) {
   }
 }
 
+Format written_format(const CompareFlags& options) {
+  return format_of_name(options.out).value_or(Format::kMarkdown);
+}
+
+/// Writes the answer to the files that were asked for.
+Answer kept(const CompareFlags& options, Answer answer) {
+  if (!options.out.empty()) {
+    write_output(options.out, render(answer, written_format(options)));
+    answer = answer_beside(options.out, std::move(answer));
+  }
+  if (!options.summary.empty()) {
+    append_output(options.summary, render(answer, Format::kMarkdown));
+  }
+  return answer;
+}
+
+void check_files(const CompareFlags& options) {
+  if (!options.out.empty()) check_output(options.out, written_format(options));
+  if (!options.summary.empty()) {  // it may hold anything, and keeps it
+    check_name(options.summary, Format::kMarkdown);
+    check_output(options.summary);
+  }
+}
+
 Answer answer(CompareFlags options) {
-  const Format written = format_of_name(options.out).value_or(Format::kMarkdown);
-  if (!options.out.empty()) check_output(options.out, written);
-  if (!options.summary.empty()) check_output(options.summary, Format::kMarkdown);
+  const Format written = written_format(options);
+  check_files(options);
   const bool judges = options.accept.empty() && options.by.empty();
   if (!judges && written == Format::kJunit) {
     throw UsageError(
@@ -102,17 +127,31 @@ Answer answer(CompareFlags options) {
   Answer answer = judges                   ? compare_or_refuse(options)
                   : options.accept.empty() ? difference_by(options)
                                            : accept_newer(options);
-  if (!options.out.empty()) {
-    write_output(options.out, render(answer, written));
-    answer = answer_beside(options.out, std::move(answer));
-  }
-  if (!options.summary.empty()) {
-    append_output(options.summary, render(answer, Format::kMarkdown));
-  }
+  answer = kept(options, std::move(answer));
   return options.quiet && judges && answer.exit_code == 0 ? Answer{} : answer;
 }
 
+constexpr const char* kOutFlags = "-o,--out";
+
 }  // namespace
+
+void keep_failure_of_compare(std::vector<std::string> arguments, const Failure& failure) {
+  CompareFlags options;
+  CLI::App files;
+  files.allow_extras();
+  files.add_option(kOutFlags, options.out);
+  files.add_option("--summary", options.summary);
+  try {
+    std::ranges::reverse(arguments);  // as CLI11 expects them
+    files.parse(std::move(arguments));
+    check_files(options);
+    // Stdout is for answers alone.
+    if (names_stdout(options.out)) options.out.clear();
+    if (names_stdout(options.summary)) options.summary.clear();
+    kept(options, refusal(failure));
+  } catch (const std::exception&) {  // the failure itself is told anyway
+  }
+}
 
 CommandRun add_compare(CLI::App& command) {
   auto options = std::make_shared<CompareFlags>();
@@ -147,7 +186,7 @@ CommandRun add_compare(CLI::App& command) {
            "Judge or accept these sequences only");
   add(command, "--method NAME", options->method,
       "Judge or accept this method only, where folders hold several");
-  add(command, "-o,--out FILE", options->out,
+  add(command, fmt::format("{} FILE", kOutFlags), options->out,
       "Also write the answer to FILE: .md, .html, .json, or .xml for JUnit");
   add(command, "--summary FILE", options->summary, "Also append the answer in markdown to FILE");
   command.add_flag("-q,--quiet", options->quiet, "Print nothing when it passes");

@@ -155,8 +155,12 @@ Words filled_in(const OldCommand& old, const Words& arguments, const TakesValue&
     const std::string& word = arguments[i];
     const bool is_flag = word.starts_with('-') && word != "-";
     (is_flag ? flags : free).push_back(word);
-    if (!is_flag || i + 1 == arguments.size()) continue;
-    if (takes_value(today, word) || takes_value(before, word)) flags.push_back(arguments[++i]);
+    const bool holds_value = word.find('=') != word.npos;
+    if (!is_flag || holds_value || i + 1 == arguments.size()) continue;
+    const auto takes = takes_value(today, word), took = takes_value(before, word);
+    // A word behind an unknown flag may be its value, and is no argument that makes an old line.
+    if (old.arguments != 0 && !takes && !took) return {};
+    if (takes.value_or(false) || took.value_or(false)) flags.push_back(arguments[++i]);
   }
   const auto is_help = [](const std::string& word) {
     return word == "--help" || word == "--help-all" || word == "-h";

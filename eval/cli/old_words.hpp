@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,8 +34,9 @@ struct OldCommand {
 std::span<const OldFlag> old_flags();
 std::span<const OldCommand> old_commands();
 
-/// Tells whether a flag of a command of today takes a value.
-using TakesValue = std::function<bool(const std::string& command, const std::string& flag)>;
+/// Tells whether a flag of a command of today takes a value; nothing for what is no flag of it.
+using TakesValue =
+    std::function<std::optional<bool>(const std::string& command, const std::string& flag)>;
 
 /// Returns the line of today for a line with old words; any other line as it is.
 std::vector<std::string> in_new_words(std::vector<std::string> words,

@@ -25,7 +25,7 @@ Answer profile(const ProfileFlags& options) {
     throw UsageError("--json and --out: both go to stdout, expected one of them to name a file");
   }
   for (const auto& file : {options.json, options.trace}) {
-    if (file) check_output(*file);
+    if (file) check_output(*file, Format::kJson);
   }
   keep_freed_memory();
   const RunPlan plan = open_job(job_of(options.method), options.threads);

@@ -98,13 +98,16 @@ bool is_of_data(const CLI::Option& option) {
 
 /// A folder of results tells by itself how its data were read and scored.
 void refuse_flags_of_data(const CLI::App& command) {
-  refuse_flags(command, "is told by the results already, expected it with --predictions",
+  refuse_flags(command,
+               "is told by the results already, expected it with --predictions, a data set as RUN, "
+               "and --by range, height or object",
                is_of_data);
 }
 
 /// Throws UsageError for flags that say nothing to intervals, scans and thresholds.
 void refuse_flags_of_breakdown(const StatsFlags& options, const CLI::App& command) {
   const bool has_curve = options.shows("threshold");
+  if (!options.predictions) refuse_flags_of_data(command);
   refuse_flags(command, "does nothing here, expected it with --by range, height or object",
                [&](const CLI::Option& option) {
                  const std::string name = option.get_name();

@@ -15,6 +15,7 @@
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
+#include "eval/exec/child_process.hpp"
 #include "eval/job/tuned_preset.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/result.hpp"
@@ -138,6 +139,7 @@ std::vector<ScanPose> take_poses(const RunPlan& plan, std::size_t position) {
 ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& planned) {
   const Clock::time_point start = Clock::now();
   const double start_cpu_ms = process_cpu_ms();
+  take_cost_of_commands();  // of commands before this one
   const Sequence& sequence = *plan.dataset.sequences[planned.position];
   const RunSettings& settings = plan.settings;
   ComputedSequence computed{planned.folder.begin(), settings.keeps_labels, {}};
@@ -159,11 +161,14 @@ ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& pl
   result = completed(plan, planned, std::move(ran), found);
   std::ranges::move(doubts, std::back_inserter(result.doubts));
   computed.outcome.folder = planned.folder.path();
-  // A program of the user's is another process, and may wait for a GPU.
   if (result.timing) {
-    result.timing->core_s = plan.job.segment.is_program()
-                                ? std::chrono::duration<double>(Clock::now() - start).count()
-                                : 1e-3 * (process_cpu_ms() - start_cpu_ms);
+    const double cpu_s = 1e-3 * (process_cpu_ms() - start_cpu_ms);
+    result.timing->core_s = cpu_s;
+    // A program of the user's is another process, and may wait for a GPU.
+    if (plan.job.segment.is_program()) {
+      result.timing->core_s = std::chrono::duration<double>(Clock::now() - start).count();
+      result.timing->program_cpu_s = cpu_s + take_cost_of_commands().cpu_s;
+    }
     result.timing->calibration_ms = calibration_ms();
   }
   return computed;

@@ -309,8 +309,8 @@ std::vector<LabelledScan> push_scan(Method& method, const Sequence& sequence,
 
 SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& settings,
                                  std::size_t most_scans) {
-  SequenceProfile profile{sequence.name(), settings.threads, std::nullopt, {}, {}, 0};
-  take_most_memory_of_commands_mib();  // of commands before this one
+  SequenceProfile profile{sequence.name(), settings.threads, std::nullopt, {}, {}};
+  take_cost_of_commands();  // of commands before this one
   const std::size_t scans = std::min(sequence.size(), most_scans);
   // The whole length: the end of a delayed sequence is labelled in another way.
   RunContext context = context_of(sequence, settings);
@@ -336,7 +336,9 @@ SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& se
   }
   for (const LabelledScan& final_scan : method->finish()) add_stages(final_scan.stages, profile);
   method.reset();  // a program's memory is known when it has ended
-  profile.program_mib = take_most_memory_of_commands_mib();
+  const CommandCost program = take_cost_of_commands();
+  profile.program_mib = program.most_memory_mib;
+  profile.program_cpu_s = program.cpu_s;
   profile.period_ms = median_period_ms(stamps_ns);
   return profile;
 }

@@ -73,6 +73,7 @@ struct SequenceProfile {
   std::vector<ScanProfile> scans;
   std::vector<std::string_view> stages;  ///< in the order in which they first ran
   double program_mib = 0;                ///< the most that a program of the user's held
+  double program_cpu_s = 0;              ///< that it took; other CPU times are without it
 };
 
 /// Segments the first `most_scans` scans of a sequence, one after the other, and measures. Throws

@@ -10,8 +10,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
+#include <mutex>
 #include <thread>
+#include <utility>
 
 namespace mosbench {
 namespace {
@@ -89,7 +90,12 @@ void kill_all(pid_t group) {
   _exit(0);
 }
 
-std::atomic<long> most_memory_kib{0};
+std::mutex ended_mutex;
+CommandCost ended_commands;
+
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
 
 void reap(pid_t process) {
   while (waitpid(process, nullptr, 0) < 0 && errno == EINTR) {
@@ -102,10 +108,11 @@ void reap_and_measure(pid_t process) {
   while (wait4(process, nullptr, 0, &usage) < 0) {
     if (errno != EINTR) return;
   }
-  long most_kib = most_memory_kib;
-  while (usage.ru_maxrss > most_kib &&
-         !most_memory_kib.compare_exchange_weak(most_kib, usage.ru_maxrss)) {
-  }
+  constexpr double kKibOfMib = 1024;
+  const std::lock_guard lock(ended_mutex);
+  ended_commands.most_memory_mib =
+      std::max(ended_commands.most_memory_mib, static_cast<double>(usage.ru_maxrss) / kKibOfMib);
+  ended_commands.cpu_s += seconds_of(usage.ru_utime) + seconds_of(usage.ru_stime);
 }
 
 int left_ms(ChildProcess::Deadline deadline) {
@@ -214,9 +221,9 @@ std::string ChildProcess::how_it_ended(Deadline deadline) {
   }
 }
 
-double take_most_memory_of_commands_mib() {
-  constexpr double kKibOfMib = 1024;
-  return static_cast<double>(most_memory_kib.exchange(0)) / kKibOfMib;
+CommandCost take_cost_of_commands() {
+  const std::lock_guard lock(ended_mutex);
+  return std::exchange(ended_commands, {});
 }
 
 }  // namespace mosbench

@@ -52,9 +52,12 @@ class ChildProcess {
   bool closed_ = false, deaf_ = false;  ///< it closed its stdout, its stdin
 };
 
-/// Returns the most memory in MiB that a command of ChildProcess held, with the processes it waited
-/// for; 0 if none ended since the last call. It is at least what this process held when it started
-/// the command.
-double take_most_memory_of_commands_mib();
+/// What commands of ChildProcess cost, with the processes that they waited for.
+struct CommandCost {
+  double most_memory_mib = 0.0;  ///< at least what this process held when it started the command
+  double cpu_s = 0.0;
+};
+/// Returns the cost of those that ended since the last call.
+CommandCost take_cost_of_commands();
 
 }  // namespace mosbench

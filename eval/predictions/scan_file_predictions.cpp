@@ -338,7 +338,7 @@ std::optional<LabelIdMap> guess_id_map(const std::vector<PredictedId>& ids,
   if (ids.empty() || ids.back().id > 2 || ids.back().id == 0) return std::nullopt;
   if (ids.back().id == 2) return kLearningIds;
   throw DataError(folder, "holds no other ids than 0 and 1",
-                  "label ids, or --id-map with their meaning (0:9,1:251)");
+                  "label ids, or `mosbench score --id-map` with their meaning (0:9,1:251)");
 }
 
 /// Throws DataError for the first id that the map does not name.

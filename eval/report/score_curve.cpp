@@ -23,11 +23,11 @@ namespace {
 void add_sequence(const Result& result, const std::optional<std::filesystem::path>& root,
                   ScoreCounts& counts) {
   const ResultScans scans(result, root);
-  if (result.predictions) {
-    throw DataError(result.file, "is of mosbench score, which has labels alone",
-                    "a run of mosbench run --write scores");
-  }
   if (!scans.has_scores()) {
+    if (result.predictions) {
+      throw DataError(result.file, "is of mosbench score of labels alone",
+                      "predictions that are confidences, or a run of mosbench run --write scores");
+    }
     throw DataError(result.folder() / "scores", "is not there",
                     "scores of points: give the same run command again, with --write scores");
   }

@@ -12,6 +12,7 @@ struct Machine {
   unsigned logical_cores = 0;
   double memory_mib = 0.0;
   std::string system;
+  bool operator==(const Machine&) const = default;
 };
 Machine this_machine();
 

@@ -1,13 +1,68 @@
 #include "eval/result/output.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <system_error>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
+#include "eval/answer/answer_text.hpp"
 #include "eval/answer/render.hpp"
 
 namespace mosbench {
+namespace {
+
+/// Whether a file is JSON as commands answer it, to the last blank, and not what they read.
+bool is_answer_json(const std::filesystem::path& file) {
+  try {
+    const std::string bytes = read_file(file);
+    const nlohmann::ordered_json json = parse_json(bytes, file);
+    return !json.contains("format") && json_text(json) == bytes;
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
+/// Whether a file may be one that mosbench wrote in this format. Of text it cannot tell more than
+/// that it is text.
+bool is_written(const std::filesystem::path& file, Format format) {
+  std::string head(4096, '\0');
+  std::ifstream in(file, std::ios::binary);
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(in.gcount()));
+  const bool names_mosbench = head.find("mosbench") != head.npos;
+  switch (format) {
+    case Format::kPng:
+      return head.starts_with("\x89PNG");
+    case Format::kHtml:
+      return head.starts_with("<!doctype html>") && names_mosbench;
+    case Format::kJunit:
+      return head.starts_with("<?xml") && names_mosbench;
+    case Format::kJson:
+      return is_answer_json(file);
+    default:
+      return head.find('\0') == head.npos && !head.starts_with('{');
+  }
+}
+
+void refuse_foreign(const std::filesystem::path& file, Format written) {
+  std::error_code ignored;
+  const bool is_file = std::filesystem::is_regular_file(file, ignored);
+  if (!is_file || std::filesystem::file_size(file, ignored) == 0) return;
+  constexpr std::array<std::string_view, 3> kOnlyRead = {".yaml", ".yml", ".tum"};
+  const bool is_read = std::ranges::find(kOnlyRead, file.extension().string()) != kOnlyRead.end();
+  if (!is_read && is_written(file, written)) return;
+  throw UsageError(fmt::format("{}: is there and no {} that mosbench wrote, expected another name",
+                               file.string(), format_names()[static_cast<std::size_t>(written)]));
+}
+
+}  // namespace
 
 bool names_stdout(const std::filesystem::path& file) {
   return file == "-" || file == "/dev/stdout" || file == "/dev/fd/1";
@@ -40,8 +95,10 @@ void check_output(const std::filesystem::path& file, std::optional<Format> writt
   while (above.has_relative_path() && !std::filesystem::exists(above, ignored)) {
     above = above.parent_path();
   }
-  if (std::filesystem::is_directory(above, ignored)) return;
-  throw DataError(above, "is no folder", "a folder for " + file.filename().string());
+  if (!std::filesystem::is_directory(above, ignored)) {
+    throw DataError(above, "is no folder", "a folder for " + file.filename().string());
+  }
+  if (written) refuse_foreign(file, *written);
 }
 
 void refuse_to_replace(const std::filesystem::path& file) {

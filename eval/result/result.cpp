@@ -157,19 +157,23 @@ std::string simulation_of(const Result& result) {
 }
 
 std::optional<RunCost> run_cost(const Result& result) {
-  if (result.cost || !result.timing || !result.timing->core_s || result.scans.empty()) {
-    return result.cost;
-  }
-  RunCost cost{
-      .core_ms_per_scan = 1e3 * *result.timing->core_s / static_cast<double>(result.scans.size()),
-      .calibration_ms = result.timing->calibration_ms,
-      .most_resident_mib = most_resident_mib(result).value_or(0.0)};
+  if (result.cost || !result.timing || result.scans.empty()) return result.cost;
+  const bool is_program = find_method(result.kind) == nullptr;  // the user's
+  const auto& cpu_s = is_program ? result.timing->program_cpu_s : result.timing->core_s;
+  if (!cpu_s) return std::nullopt;
+  RunCost cost{.core_ms_per_scan = 1e3 * *cpu_s / static_cast<double>(result.scans.size()),
+               .calibration_ms = result.timing->calibration_ms,
+               .most_resident_mib = most_resident_mib(result).value_or(0.0),
+               .machine = result.from.machine};
   std::error_code error;
   for (fs::recursive_directory_iterator it(result.folder(), error), end; !error && it != end;
        it.increment(error)) {
-    if (!it->is_regular_file(error) || it->path().filename() == "result.json") continue;
-    cost.bytes_written += it->file_size(error);
+    const std::string name = it->path().filename().string();
+    if (name == "result.json") continue;
+    if (it.depth() == 0) cost.what_written.push_back(name);
+    if (it->is_regular_file(error)) cost.bytes_written += it->file_size(error);
   }
+  std::ranges::sort(cost.what_written);
   return cost;
 }
 

@@ -53,6 +53,7 @@ struct Timing {
   unsigned threads = 0;  ///< that the method was run with; 0 in results that do not tell
   double wall_s = 0.0;
   std::optional<double> core_s = std::nullopt;          ///< that a core was taken, poses included
+  std::optional<double> program_cpu_s = std::nullopt;   ///< CPU of a user's program, and of ours
   std::optional<double> calibration_ms = std::nullopt;  ///< of the machine, see `calibration_ms`
   std::vector<std::string> stages;  ///< names, in the order in which they first ran
   std::vector<ScanCost> costs;      ///< as many as scans
@@ -118,10 +119,12 @@ struct Acceptance {
 
 /// What a run cost.
 struct RunCost {
-  double core_ms_per_scan = 0.0;
+  double core_ms_per_scan = 0.0;         ///< CPU
   std::optional<double> calibration_ms;  ///< of the machine
   double most_resident_mib = 0.0;
-  std::uint64_t bytes_written = 0;  ///< beside result.json
+  std::uint64_t bytes_written = 0;          ///< beside result.json
+  std::optional<Machine> machine{};         ///< older results do not tell
+  std::vector<std::string> what_written{};  ///< "labels", "scores"; likewise
 };
 
 /// A pose that odometry does not trust.
@@ -255,6 +258,8 @@ struct Doubt {
 };
 /// Returns a line per sentence, after the names of all that it is about: "00, 01 and 3 more: ...".
 std::vector<std::string> told(const std::vector<Doubt>& doubts);
+/// The same with one line for sentences that differ in their numbers alone: the first of them.
+std::vector<std::string> told_by_kind(std::vector<Doubt> doubts);
 
 /// Which scans of the protocol are not counted: without predictions, of other splits.
 std::vector<std::string> shortfalls(const ResultSet& set);

@@ -98,6 +98,8 @@ void visit_members(Record& cost, auto&& visit) {
   visit("calibration_ms", cost.calibration_ms, Member::kIfSet);
   visit("most_resident_mib", cost.most_resident_mib, Member::kNeeded);
   visit("bytes_written", cost.bytes_written, Member::kNeeded);
+  visit("machine", cost.machine, Member::kIfSet);
+  visit("what_written", cost.what_written, Member::kIfAny);
 }
 
 template <Is<PredictionSource> Record>

@@ -22,7 +22,7 @@ class MemberFault : public std::runtime_error {
 
 /// All of a result but its scans, what depends on the clock, and places on this machine.
 nlohmann::ordered_json header_json(const Result& result);
-/// All of a result, members as FORMATS.md describes them.
+/// All of a result, members as docs/formats/files.md describes them.
 nlohmann::ordered_json to_json(const Result& result);
 
 /// Of the header, what decides labels and scores: two runs that give the same asked the same.

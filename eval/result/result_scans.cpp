@@ -265,6 +265,8 @@ ResultScans::ResultScans(const Result& result, const std::optional<fs::path>& da
   aligned_ = aligned(result, dataset_);
   labels_ =
       open_predictions(source_.path, sequence(), scored_scans(), true, source_.options).labels;
+  const std::vector<std::size_t> scored = scored_scans();
+  has_scores_ = !scored.empty() && !labels_->confidences(scored.front()).empty();
 }
 
 std::vector<std::size_t> ResultScans::scored_scans() const {
@@ -279,7 +281,11 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
     scan.outcomes.assign(scan.frame.points.size(), PointOutcome::kIgnoredStatic);
     return scan;
   }
-  const std::vector<std::uint32_t> labels = labels_->read(scan_index);
+  const bool is_confident = aligned_ && has_scores_;
+  std::vector<double> confidences;
+  if (is_confident) confidences = labels_->confidences(scan_index);
+  const std::vector<std::uint32_t> labels =
+      is_confident ? labels_->labels(scan_index, confidences) : labels_->read(scan_index);
   const std::optional<Confusion>& recorded = rows()[scan_index].counts;
   if (scan.frame.truth && recorded) {
     const bool gated = result_.protocol->range_rule != RangeRule::kNone;
@@ -294,7 +300,10 @@ JudgedScan ResultScans::read(std::size_t scan_index) const {
     }
   }
   if (recorded) check_counts(scan, *recorded);
-  if (has_scores_) {
+  for (const double confidence : confidences) {
+    scan.scores.push_back(static_cast<float>(confidence));
+  }
+  if (has_scores_ && !is_confident) {
     const fs::path file = dynamic_score_file(result_.folder(), scan.frame.stem);
     scan.scores = parse_dynamic_scores(
         read_file(file), scan.frame.points.size(),

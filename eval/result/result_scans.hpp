@@ -57,7 +57,7 @@ Reading reading_of(const Result& result);
 struct JudgedScan {
   Frame frame;
   std::vector<PointOutcome> outcomes;  ///< kIgnoredStatic or kIgnoredMoving without truth
-  std::vector<float> scores;           ///< of the method, empty unless the run kept them
+  std::vector<float> scores;           ///< of the method, empty unless they are known
   std::vector<Reason> reasons;         ///< why points move, empty unless the run kept them
 };
 
@@ -84,7 +84,7 @@ class ResultScans {
   /// Protocol and range of the run.
   ScoreRule rule() const { return {result_.protocol, result_.range}; }
   const Sequence& sequence() const { return *dataset_.sequences.front(); }
-  /// Whether the run kept scores.
+  /// Whether the run kept scores, or the predictions are confidences.
   bool has_scores() const { return has_scores_; }
   /// Whether the run kept why points move.
   bool has_reasons() const { return has_reasons_; }

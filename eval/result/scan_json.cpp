@@ -119,6 +119,7 @@ ordered_json timing_json(const Result& result) {
   ordered_json json = {{"threads", timing.threads},
                        {"wall_s", timing.wall_s},
                        {"core_s", json_or_null(timing.core_s)},
+                       {"program_cpu_s", json_or_null(timing.program_cpu_s)},
                        {"calibration_ms", json_or_null(timing.calibration_ms)},
                        {"method_ms_per_scan", json_or_null(method_ms_per_scan(result))},
                        {"stage_ms_per_scan", mean_stages_ms(timing)},
@@ -138,11 +139,13 @@ Timing timing_from_json(const ordered_json& json) {
   Timing timing;
   timing.threads = json.value("threads", 0U);
   timing.wall_s = json.at("wall_s");
-  if (json.contains("core_s") && !json.at("core_s").is_null()) timing.core_s = json.at("core_s");
-  const auto calibration_ms = json.find("calibration_ms");
-  if (calibration_ms != json.end() && !calibration_ms->is_null()) {
-    timing.calibration_ms = calibration_ms->get<double>();
-  }
+  const auto take = [&](const char* name, std::optional<double>& time) {
+    const auto member = json.find(name);
+    if (member != json.end() && !member->is_null()) time = member->get<double>();
+  };
+  take("core_s", timing.core_s);
+  take("program_cpu_s", timing.program_cpu_s);
+  take("calibration_ms", timing.calibration_ms);
   const ordered_json& columns = json.at("scan_columns");
   for (std::size_t i = kColumns.size(); i < columns.size(); ++i) {
     std::string stage = columns.at(i);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/doctor/doctor.hpp"
@@ -224,6 +225,14 @@ std::vector<std::string> told(const std::vector<Doubt>& doubts) {
   return lines;
 }
 
+std::vector<std::string> told_by_kind(std::vector<Doubt> doubts) {
+  std::map<std::string, std::string> first_of_kind;
+  for (Doubt& doubt : doubts) {
+    doubt.what = first_of_kind.emplace(without_digits(doubt.what), doubt.what).first->second;
+  }
+  return told(doubts);
+}
+
 namespace {
 
 std::vector<std::string> shortfalls(std::size_t missing, const std::optional<std::string>& split) {
@@ -253,7 +262,9 @@ ResultSet only(ResultSet set, const std::vector<std::string>& names) {
     const bool is_there = std::ranges::any_of(
         set.sequences, [&](const Result& result) { return result.sequence.text() == name; });
     if (is_there) continue;
-    throw DataError(set.path, "has no sequence " + name, "those that --sequences names");
+    std::vector<std::string> there;
+    for (const Result& result : set.sequences) there.push_back(result.sequence.text());
+    throw DataError(set.path, "has no sequence " + name, names_text(there));
   }
   std::erase_if(set.sequences, [&](const Result& result) {
     return !names.empty() && std::ranges::find(names, result.sequence.text()) == names.end();

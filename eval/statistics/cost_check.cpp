@@ -10,17 +10,34 @@
 namespace mosbench {
 namespace {
 
+/// CPU times of shorter runs differ by a third on one machine.
+constexpr double kLeastCpu_s = 2.0;
+
 /// The costs of sequences together: CPU as milliseconds of all scans.
 struct CostSum {
   std::array<double, kCostKinds.size()> values{};
-  bool has_calibration = true;
+  double scans = 0.0;
 
-  void add(const RunCost& cost, std::size_t scans, double speed) {
-    values[0] += speed * cost.core_ms_per_scan * static_cast<double>(scans);
+  void add(const RunCost& cost, std::size_t count) {
+    values[0] += cost.core_ms_per_scan * static_cast<double>(count);
     values[1] = std::max(values[1], cost.most_resident_mib);
     values[2] += static_cast<double>(cost.bytes_written);
+    scans += static_cast<double>(count);
   }
 };
+
+/// Returns by what CPU times of `other` become those on the machine of `cost`.
+std::optional<double> machine_factor(const RunCost& cost, const RunCost& other) {
+  if (cost.machine && cost.machine == other.machine) return 1.0;
+  if (!cost.calibration_ms || !other.calibration_ms) return std::nullopt;
+  return *cost.calibration_ms / *other.calibration_ms;
+}
+
+std::string why_short(double cpu_ms) {
+  if (cpu_ms >= 1e3 * kLeastCpu_s) return "";
+  return fmt::format("too short to judge: {:.1f} s of CPU, expected at least {:g} s", 1e-3 * cpu_ms,
+                     kLeastCpu_s);
+}
 
 }  // namespace
 
@@ -45,33 +62,49 @@ CostLimits cost_limits(std::string_view flag, const std::string& text) {
 
 bool CostCheck::is_within() const { return newer <= baseline * (1.0 + tolerance()) + 1e-9; }
 
+bool CostCheck::warns() const {
+  return limit ? !unjudged.empty() : unjudged.empty() && !is_within();
+}
+
 std::vector<CostCheck> check_costs(const ResultSet& baseline, const ResultSet& newer,
                                    const CostLimits& limits) {
   CostSum before, after;
-  double scans = 0.0, other_scans = 0.0;
+  double cpu_there_ms = 0.0;  // of the new run on the baseline's machine
+  bool are_comparable = true;
+  std::string others_written;
   for (const Result& first : baseline.sequences) {
     const auto second = std::ranges::find(newer.sequences, first.sequence, &Result::sequence);
     if (second == newer.sequences.end()) continue;
     const std::optional<RunCost> cost = run_cost(first), other = run_cost(*second);
     if (!cost || !other) return {};
-    const bool is_calibrated = cost->calibration_ms && other->calibration_ms;
-    before.has_calibration = before.has_calibration && is_calibrated;
-    before.add(*cost, first.scans.size(), 1.0);
-    after.add(*other, second->scans.size(),
-              is_calibrated ? *cost->calibration_ms / *other->calibration_ms : 1.0);
-    scans += static_cast<double>(first.scans.size());
-    other_scans += static_cast<double>(second->scans.size());
+    before.add(*cost, first.scans.size());
+    after.add(*other, second->scans.size());
+    const std::optional<double> factor = machine_factor(*cost, *other);
+    are_comparable = are_comparable && factor;
+    cpu_there_ms +=
+        factor.value_or(1.0) * other->core_ms_per_scan * static_cast<double>(second->scans.size());
+    const bool are_told = !cost->what_written.empty() && !other->what_written.empty();
+    if (are_told && cost->what_written != other->what_written) {
+      others_written =
+          fmt::format("not compared: {} before, {} now", fmt::join(cost->what_written, ", "),
+                      fmt::join(other->what_written, ", "));
+    }
   }
-  if (scans == 0.0 || other_scans == 0.0) return {};
-  before.values[0] /= scans;
-  after.values[0] /= other_scans;
   std::vector<CostCheck> checks;
-  for (std::size_t k = 0; k < kCostKinds.size(); ++k) {
+  if (before.scans == 0.0 || after.scans == 0.0) return checks;
+  if (are_comparable && before.values[0] > 0.0) {
+    checks.push_back({.kind = &kCostKinds[0],
+                      .baseline = before.values[0] / before.scans,
+                      .newer = cpu_there_ms / after.scans,
+                      .limit = limits[0],
+                      .unjudged = why_short(std::max(before.values[0], after.values[0])),
+                      .factor = cpu_there_ms / after.values[0]});
+  }
+  for (std::size_t k = 1; k < kCostKinds.size(); ++k) {
     // Memory and files grow with the scans.
-    const bool is_known =
-        before.values[k] > 0.0 && (k > 0 ? scans == other_scans : before.has_calibration);
-    if (!is_known) continue;
-    checks.push_back({&kCostKinds[k], before.values[k], after.values[k], limits[k]});
+    if (before.values[k] <= 0.0 || before.scans != after.scans) continue;
+    checks.push_back({&kCostKinds[k], before.values[k], after.values[k], limits[k],
+                      k == 2 ? others_written : ""});
   }
   return checks;
 }

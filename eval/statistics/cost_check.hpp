@@ -29,15 +29,18 @@ struct CostCheck {
   const CostKind* kind;
   double baseline, newer;
   std::optional<double> limit;  ///< that was asked for
+  std::string unjudged{};       ///< why nobody can tell whether it grew; empty where one can
+  double factor = 1.0;          ///< that `newer` contains, from machine to machine
   double growth() const { return newer / baseline - 1.0; }
   double tolerance() const { return limit.value_or(kind->usual_growth); }
   bool is_within() const;
   /// Whether it is within a limit that was asked for; otherwise it is a warning at most.
-  bool passed() const { return !limit || is_within(); }
+  bool passed() const { return !limit || !unjudged.empty() || is_within(); }
+  bool warns() const;
 };
 
 /// Compares what both runs know of the sequences that both have. CPU times are those on the
-/// baseline's machine, by the calibrations.
+/// baseline's machine, by the calibrations where it is another one.
 std::vector<CostCheck> check_costs(const ResultSet& baseline, const ResultSet& newer,
                                    const CostLimits& limits);
 

@@ -241,11 +241,23 @@ Sheet cost_sheet(const GateResult& result) {
                           {"change", Unit::kPercent},
                           {"tolerance", Unit::kPercent},
                           {"verdict", Unit::kText}},
-              .notes = {"CPU as on the baseline's machine; a cost fails only by --max-cost"}};
+              .notes = {"a cost fails only by --max-cost"}};
   for (const CostCheck& cost : result.costs) {
-    const char* bad = cost.limit ? "REGRESSION" : "warning";
+    const char* verdict = !cost.unjudged.empty() ? "not judged"
+                          : cost.is_within()     ? "pass"
+                          : cost.limit           ? "REGRESSION"
+                                                 : "warning";
     sheet.rows.push_back({std::string(cost.kind->title), cost.baseline, cost.newer, cost.growth(),
-                          cost.tolerance(), cost.is_within() ? "pass" : bad});
+                          cost.tolerance(), verdict});
+    if (!cost.unjudged.empty()) {
+      sheet.notes.push_back(fmt::format("{}: {}", cost.kind->title, cost.unjudged));
+    }
+    if (cost.factor != 1.0) {
+      sheet.notes.push_back(
+          fmt::format("new {} as on the baseline's machine, by the calibrations: "
+                      "times {:.2f}",
+                      cost.kind->title, cost.factor));
+    }
   }
   return sheet;
 }
@@ -269,13 +281,15 @@ std::vector<CheckResult> gate_checks(const GateResult& result) {
     told.message = percent_text(check.baseline) + " % before, " + now;
   }
   for (const CostCheck& cost : result.costs) {
-    if (!cost.limit) continue;
     CheckResult& told = checks.emplace_back(CheckResult{std::string(cost.kind->title), "", ""});
-    if (cost.passed()) continue;
-    told.title = fmt::format("{} grew", cost.kind->title);
+    if (cost.warns()) told.severity = CheckResult::Severity::kWarning;
+    if (cost.passed() && !cost.warns()) continue;
+    told.title =
+        fmt::format("{} {}", cost.kind->title, cost.unjudged.empty() ? "grew" : "not judged");
     told.message =
         fmt::format("{:.1f} before, {:.1f} now: {} %, tolerance {} %", cost.baseline, cost.newer,
                     percent_text(cost.growth(), "{:+.1f}"), percent_text(cost.tolerance()));
+    if (!cost.unjudged.empty()) told.message = cost.unjudged;
   }
   return checks;
 }
@@ -305,7 +319,9 @@ ordered_json to_json(const GateResult& result) {
                              {"new", cost.newer},
                              {"change", cost.growth()},
                              {"tolerance", cost.tolerance()},
+                             {"factor", cost.factor},
                              {"decides", cost.limit.has_value()},
+                             {"unjudged", cost.unjudged},
                              {"passed", cost.is_within()}});
   }
   return json;

@@ -282,12 +282,21 @@ void refuse_overlap(const ResultSet& newer, const fs::path& folder) {
   }
   for (const Result& sequence : newer.sequences) {
     const fs::path place = folder / sequence.sequence.folder();
-    if (is_in(resolved(place / "result.json"), baseline)) continue;
-    throw UsageError(place.string() + ": is a link that leads out of the baseline, expected none");
+    if (!is_in(resolved(place / "result.json"), baseline)) {
+      throw UsageError(place.string() +
+                       ": is a link that leads out of the baseline, expected none");
+    }
+    for (const char* file : kWritten) {
+      if (file == std::string_view(kResult) || !is_there(place / file)) continue;
+      throw UsageError(fmt::format(
+          "{}: is of the run there, and would stay beside other numbers, expected a folder of "
+          "accepted results alone",
+          (place / file).string()));
+    }
   }
 }
 
-void accept_baseline(const ResultSet& run, const fs::path& folder,
+bool accept_baseline(const ResultSet& run, const fs::path& folder,
                      const std::optional<Acceptance>& why, Others others) {
   const fs::path baseline = resolved(folder);
   const fs::path fresh = partial_of(baseline);
@@ -295,7 +304,7 @@ void accept_baseline(const ResultSet& run, const fs::path& folder,
   const BaselineChange change = change_of(run, baseline, why, others);
   if (change.superseded.empty() && change.written.size() <= 1) {
     for (const auto& [file, bytes] : change.written) commit_file(baseline / file, bytes);
-    return;
+    return !change.written.empty();
   }
   // Several files change at the same moment only with the folder that they are in.
   try {
@@ -304,6 +313,7 @@ void accept_baseline(const ResultSet& run, const fs::path& folder,
     for (const auto& [file, bytes] : change.written) write_file_atomic(fresh / file, bytes);
     for (const fs::path& file : change.superseded) fs::remove(fresh / file);
     replace_folder(fresh, baseline);
+    return true;
   } catch (...) {
     std::error_code ignored;
     fs::remove_all(fresh, ignored);

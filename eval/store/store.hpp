@@ -73,7 +73,8 @@ std::vector<ResultSet> accepted_runs(const std::filesystem::path& folder);
 
 /// Throws UsageError if accepting the results below `newer` as the baseline in `folder` would take
 /// some of them away: one folder is the other or above it, or a sequence of the baseline is a link
-/// that leads out of it.
+/// that leads out of it. Also where the baseline is a run with files beside its results: they would
+/// stay as the labels of other numbers.
 void refuse_overlap(const ResultSet& newer, const std::filesystem::path& folder);
 
 /// What becomes of the sequences of a baseline that a run does not have.
@@ -81,8 +82,8 @@ enum class Others : std::uint8_t { kRemove, kKeep };
 
 /// Writes <folder>/<sequence>/result.json for every sequence of the run; other files stay. Results
 /// that change keep `why`. After a kill at any moment the old or the new baseline is whole.
-/// `folder` must be locked. Throws DataError.
-void accept_baseline(const ResultSet& run, const std::filesystem::path& folder,
+/// `folder` must be locked. Returns whether anything changed. Throws DataError.
+bool accept_baseline(const ResultSet& run, const std::filesystem::path& folder,
                      const std::optional<Acceptance>& why = std::nullopt,
                      Others others = Others::kRemove);
 

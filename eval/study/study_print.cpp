@@ -43,6 +43,7 @@ Sheet overview_sheet(const StudyTable& table) {
                           row.to_best ? mean_text(*row.to_best) : "", mean_text(row.metrics[1]),
                           mean_text(row.metrics[2]), or_missing(row.ms_per_scan),
                           row.is_on_front ? "*" : "", or_missing(row.rank)});
+    sheet.row_standing.push_back({table.simulated, "", row.doubts});
   }
   return sheet;
 }
@@ -259,6 +260,7 @@ Sheet records_of(const StudyPlan& plan) {
   for (const PlannedCell& planned : plan.cells) {
     const StudyCell& cell = planned.cell;
     const CellNumbers& numbers = planned.numbers;
+    sheet.row_standing.push_back({numbers.simulated, "", numbers.doubts});
     sheet.rows.push_back(
         {cell.key, cell.data->name, cell.data->group, cell.sequence, cell.method->name,
          cell.odometry, cell.axis == nullptr ? "" : cell.axis->name, cell.value,
@@ -344,18 +346,18 @@ Answer study_answer(const StudyPlan& plan, const StudyTable& table) {
                 .records = records_of(plan),
                 .json = json_text(json),
                 .page = filled_page(study_asset(), json)};
+  std::string caption = table.rule ? "protocol " + rule_name(*table.rule) : "";
   if (answer.exit_code != 0) {
     answer.standing->doubts.push_back(fmt::format(
         "INCOMPLETE: {} missing", counted(table.cells - table.done, "cell is", "cells are")));
+    caption += (caption.empty() ? "" : "; ") + answer.standing->doubts.back();
   }
   for (const StudyCurve& curve : table.curves) {
     answer.sheets.push_back(curve.is_grid ? grid_sheet(table, curve) : curve_sheet(table, curve));
   }
   if (!table.choices.empty()) answer.sheets.push_back(choices_sheet(table));
   if (!table.effects.empty()) answer.sheets.push_back(effects_sheet(table));
-  for (Sheet& sheet : answer.sheets) {
-    if (table.rule) sheet.caption = "protocol " + rule_name(*table.rule);
-  }
+  for (Sheet& sheet : answer.sheets) sheet.caption = caption;
   answer.sheets.back().notes = notes_of(table);
   return answer;
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <ranges>
 #include <set>
@@ -26,10 +27,12 @@ std::optional<double> mean_of(auto&& values) {
 StudyRow row_of(const DoneCells& cells, const std::string& label) {
   const auto is_plain = is_plain_of(label);
   std::vector<std::optional<double>> ms;
-  for (const DoneCell& each : cells.done) {
-    if (is_plain(each.cell)) ms.push_back(each.numbers.ms_per_scan);
-  }
   StudyRow row;
+  for (const DoneCell& each : cells.done) {
+    if (!is_plain(each.cell)) continue;
+    ms.push_back(each.numbers.ms_per_scan);
+    std::ranges::copy(each.numbers.doubts, std::back_inserter(row.doubts));
+  }
   row.label = label;
   row.metrics = cells.metrics(is_plain);
   row.ms_per_scan = mean_of(ms);
@@ -196,7 +199,7 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
     all_predicted = all_predicted && expected_s.has_value();
     predicted_s += expected_s.value_or(0);
   }
-  table.doubts = told(doubts);
+  table.doubts = told_by_kind(doubts);
   if (table.done == 0) return;
   table.core_s = core_s;
   if (all_predicted) table.predicted_s = predicted_s;

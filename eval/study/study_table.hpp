@@ -30,6 +30,7 @@ struct StudyRow {
   std::optional<double> ms_per_scan;
   bool is_on_front = false;    ///< none is as good and as fast, and better in one
   std::optional<double> rank;  ///< mean over sequences of its place, 1 the best
+  std::vector<std::string> doubts{};
 };
 
 /// Metrics of every row by the strength of one disturbance, or by the value of one setting.

@@ -30,11 +30,17 @@ nlohmann::ordered_json point_json(const Confusion& counts) {
 
 std::vector<std::string> curve_lines(const ScoreCurve& curve) {
   const CurvePoint& best = best_point(curve);
-  return {fmt::format("average precision {} %, of the points of {}",
-                      percent_text(curve.average_precision), counted(curve.scans, "scan")),
-          fmt::format("own threshold: {}", metrics_text(curve.of_labels)),
-          fmt::format("best threshold {:.6g}: {} (best on the same data: optimistic)",
-                      best.threshold, metrics_text(best.counts))};
+  std::vector<std::string> lines = {
+      fmt::format("average precision {} %, of the points of {}",
+                  percent_text(curve.average_precision), counted(curve.scans, "scan")),
+      fmt::format("own threshold: {}", metrics_text(curve.of_labels)),
+      fmt::format("best threshold {:.6g}: {} (best on the same data: optimistic)", best.threshold,
+                  metrics_text(best.counts))};
+  if (moving_iou(curve.of_labels) > moving_iou(best.counts)) {
+    lines.emplace_back(
+        "its own may be better: a threshold per scan, or more than the score decides its labels");
+  }
+  return lines;
 }
 
 nlohmann::ordered_json threshold_json(const CurvePoint& point) {

@@ -39,7 +39,7 @@ OwnedSettings of_poses(const Result& result) {
 
 OwnedSettings of_disturbance(const Result& result) {
   OwnedSettings settings{result.method};
-  const std::string perturb = disturbance_of(result);
+  const std::string perturb = mark_of(result).disturbed;
   settings.values.set("perturb", perturb.empty() ? "none" : perturb);
   return settings;
 }

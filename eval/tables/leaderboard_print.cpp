@@ -13,6 +13,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr const char* kAllSequences = "all";
+
 Cell estimate_cell(const std::optional<Estimates>& estimates, Metric metric) {
   return estimates ? Cell(spread_of((*estimates)[metric])) : Cell();
 }
@@ -64,6 +66,15 @@ std::vector<std::string> notes_of(const Leaderboard& board) {
   return notes;
 }
 
+/// Of one sequence of a run, or of all.
+Standing standing_of_row(const LeaderboardRow& row, const std::string& sequence) {
+  ResultSet part = *row.run;
+  std::erase_if(part.sequences, [&](const Result& result) {
+    return sequence != kAllSequences && result.sequence.text() != sequence;
+  });
+  return standing_of(part);
+}
+
 /// What is told beside IoU.
 constexpr auto kBeside = std::span(kBriefMetrics).subspan<1>();
 
@@ -105,6 +116,7 @@ Sheet sheet_of(const Leaderboard& board) {
     cells.push_back(or_missing(row.memory_mb));
     cells.emplace_back(row.is_on_front ? "*" : "");
     cells.push_back(to_first_cell(board, row));
+    sheet.row_standing.push_back(standing_of_row(row, kAllSequences));
   }
   return sheet;
 }
@@ -135,6 +147,7 @@ Sheet records_of(const Leaderboard& board) {
     const auto add = [&](const std::string& sequence, const std::optional<Estimates>& estimates,
                          bool is_all) {
       const Estimates metrics = estimates.value_or(Estimates{});
+      sheet.row_standing.push_back(standing_of_row(row, sequence));
       const Difference to_first = is_all ? row.to_first.value_or(Difference{}) : Difference{};
       std::vector<Cell>& cells = sheet.rows.emplace_back();
       cells = {first.method, first.setting, first.file.string(), sequence};
@@ -147,7 +160,7 @@ Sheet records_of(const Leaderboard& board) {
         cells.push_back(setting_cell(setting.values[r]));
       }
     };
-    add("all", row.all, true);
+    add(kAllSequences, row.all, true);
     for (std::size_t s = 0; s < board.sequences.size(); ++s) {
       add(board.sequences[s], row.sequences[s], false);
     }
@@ -174,6 +187,7 @@ ordered_json to_json(const Leaderboard& board, std::size_t r) {
   json["ms_per_scan"] = json_or_null(row.ms_per_scan);
   json["memory_mb"] = json_or_null(row.memory_mb);
   json["on_front"] = row.is_on_front;
+  json["standing"] = sentences(standing_of_row(row, kAllSequences));
   json["to_first"] = row.to_first ? to_json(*row.to_first) : ordered_json(nullptr);
   return json;
 }

@@ -168,6 +168,7 @@ ordered_json sequence_json(const SequenceProfile& profile) {
   }
   return {{"sequence", profile.name},
           {"threads", profile.threads},
+          {"program_cpu_s", profile.program_cpu_s},
           {"period_ms", json_or_null(profile.period_ms)},
           {"ms_per_scan", scan_ms(profile)},
           {"points_per_s", points_per_s(profile)},
@@ -200,6 +201,12 @@ Answer profile_answer(const RunPlan& plan, const std::vector<SequenceProfile>& p
     answer.sheets.back().lead = {fmt::format("{}: {}, {}; milliseconds per scan", profile.name,
                                              counted(profile.scans.size(), "scan"),
                                              counted(profile.threads, "thread"))};
+    if (profile.program_mib > 0) {
+      answer.sheets.back().notes.push_back(
+          fmt::format("CPU is without the program, which took {:.1f} s, its start included, and "
+                      "held {:.1f} MiB",
+                      profile.program_cpu_s, profile.program_mib));
+    }
     answer.sheets.push_back(memory_sheet(profile));
     answer.sheets.back().notes = {speed_line(profile)};
   }

@@ -103,7 +103,9 @@ Sheet sheet_of(const Block& block, const PaperTable& table) {
   std::vector<std::string> footnotes;
   for (const TableRow* row : block.rows) {
     sheet.rows.push_back({row->method, row->setting, row->protocol});
+    Standing& standing = sheet.row_standing.emplace_back();
     for (const TableCell& cell : row->cells) {
+      standing.doubts.insert(standing.doubts.end(), cell.doubts.begin(), cell.doubts.end());
       sheet.rows.back().push_back(cell_text(cell) + mark_of(cell.reasons, footnotes));
     }
   }
@@ -155,6 +157,7 @@ Sheet records_of(const FilledTable& table) {
     for (std::size_t c = 0; c < row.cells.size(); ++c) {
       const TableCell& cell = row.cells[c];
       const Spread measured = measured_spread(cell);
+      sheet.row_standing.push_back({cell.simulated, "", cell.doubts});
       sheet.rows.push_back(
           {std::string(table.table->name), row.section, row.method, row.setting, row.protocol,
            cell.column, cell.published ? cell.published->iou_percent : "",

@@ -132,8 +132,13 @@ TEST_F(Bless, KeepsWhyAndWhenInWhatChanges) {
   EXPECT_THAT(cli::run({"compare", baseline().string(), (folder_ / "second").string()}).out,
               HasSubstr(": more \"rooms\"\n"));
   const Files before = cli::contents(baseline());
-  ASSERT_EQ(accept("second", "--accept=again").exit_code, 0);
+  const cli::Answer again = accept("second", "--accept=again");
+  ASSERT_EQ(again.exit_code, 0);
+  EXPECT_THAT(again.out, HasSubstr("already: nothing changed, and no reason is kept\n"));
   EXPECT_EQ(cli::contents(baseline()), before) << "nothing changed";
+  const cli::Answer empty = accept("second", "--accept=");
+  EXPECT_EQ(empty.exit_code, 2);
+  EXPECT_THAT(empty.err, HasSubstr("--accept=: is empty, expected a value"));
 
   // Sequence 00 alone; 01 and 02 stay, although the new run has no 02.
   const cli::Answer one = accept("first", "--accept", {"--sequences", "00"});
@@ -154,16 +159,26 @@ TEST_F(Bless, KeepsWhyAndWhenInWhatChanges) {
             0);
 }
 
-/// The calibration makes the CPU of two machines comparable; here it says that this one is slow.
+TEST_F(Bless, RefusesAFolderWithLabelsOfARun) {
+  const Files before = cli::contents(folder_ / "first");
+  const cli::Answer answer = cli::run(
+      {"compare", (folder_ / "first").string(), (folder_ / "second").string(), "--accept"});
+  EXPECT_EQ(answer.exit_code, 2);
+  EXPECT_THAT(answer.err, HasSubstr("first/01/labels: is of the run there, and would stay beside "
+                                    "other numbers, expected a folder of accepted results alone"));
+  EXPECT_EQ(cli::contents(folder_ / "first"), before);
+}
+
 TEST_F(Bless, KeepsTheCostThatAGateComparesWith) {
-  const auto edit = [&](auto&& change) {
+  const auto edit_in = [&](const fs::path& folder, auto&& change) {
     for (const char* name : {"00", "01"}) {
-      const fs::path file = baseline() / name / "result.json";
+      const fs::path file = folder / name / "result.json";
       auto json = nlohmann::ordered_json::parse(read_file(file));
       change(json);
       write_file_atomic(file, json.dump());
     }
   };
+  const auto edit = [&](auto&& change) { edit_in(baseline(), change); };
   const auto compare = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words = {"compare", baseline().string(), (folder_ / "first").string()};
     words.insert(words.end(), more.begin(), more.end());
@@ -175,9 +190,14 @@ TEST_F(Bless, KeepsTheCostThatAGateComparesWith) {
     EXPECT_GT(cost.at("calibration_ms").get<double>(), 0.0);
     EXPECT_GT(cost.at("bytes_written").get<int>(), 6 * 4 * 100);
     ASSERT_GT(cost.at("core_ms_per_scan").get<double>(), 0.0);
-    cost["core_ms_per_scan"] = cost.at("core_ms_per_scan").get<double>() / 100.0;
+    EXPECT_EQ(cost.at("what_written").size(), 1U);
+    EXPECT_TRUE(cost.at("machine").contains("processor"));
+    cost["core_ms_per_scan"] = 1000;
     json.at("settings").erase("min_otsu_score");  // a release before had none
   });
+  EXPECT_EQ(compare({"--max-cost", "cpu=50"}).exit_code, 0) << "faster";
+  edit_in(folder_ / "first",
+          [](nlohmann::ordered_json& json) { json.at("timing")["core_s"] = 6 * 2.0; });
   const cli::Answer warned = compare({});
   EXPECT_EQ(warned.exit_code, 0) << warned.err;
   EXPECT_THAT(warned.out, testing::ContainsRegex("CPU ms per scan .* warning"));

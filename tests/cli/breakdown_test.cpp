@@ -84,7 +84,7 @@ TEST(Breakdown, OfAFolderOfResultsFindsDataLabelsAndRules) {
   EXPECT_THAT(twice.err, HasSubstr("--protocol mapmos: is told by the results already"));
   const cli::Answer hall = cli::run({"breakdown", run, "--sequences", "hall"});
   EXPECT_EQ(hall.exit_code, 3);
-  EXPECT_THAT(hall.err, HasSubstr("run: has no sequence hall"));
+  EXPECT_THAT(hall.err, HasSubstr("run: has no sequence hall, expected room"));
   EXPECT_THAT(cli::run({"breakdown", folder / "room"}).err, HasSubstr("--predictions: is missing"));
 }
 
@@ -99,7 +99,9 @@ TEST(Stats, RefusesWhatItWouldPassOverAndReadsDataElsewhere) {
     EXPECT_EQ(answer.exit_code, 2) << answer.out;
     return answer.err;
   };
-  EXPECT_THAT(refusal({"--protocol", "mapmos"}), HasSubstr("--protocol mapmos: does nothing here"));
+  EXPECT_THAT(refusal({"--protocol", "mapmos"}),
+              HasSubstr("--protocol mapmos: is told by the results already, expected it with "
+                        "--predictions, a data set as RUN, and --by range, height or object"));
   EXPECT_THAT(refusal({"--data", run}), HasSubstr("--data"));
   EXPECT_THAT(refusal({"--by", "scan", "--top", "3"}), HasSubstr("--top 3: does nothing here"));
   EXPECT_THAT(refusal({"--by", "range", "-o", "x.png"}), HasSubstr("-o x.png: is of a curve"));

@@ -165,10 +165,10 @@ TEST_F(Compare, WritesTestCasesAndAppendsToASummary) {
   EXPECT_EQ(compare_to_whole("flipped").exit_code, 1);
   EXPECT_THAT(
       read_file(folder_ / "gate.xml"),
-      AllOf(HasSubstr("tests=\"1\" failures=\"1\""),
+      AllOf(HasSubstr("tests=\"2\" failures=\"1\""),
             HasSubstr("name=\"room\"><failure message=\"IoU of room dropped: 100.0 % before")));
   EXPECT_EQ(compare_to_whole("whole").exit_code, 0);
-  EXPECT_THAT(read_file(folder_ / "gate.xml"), HasSubstr("tests=\"1\" failures=\"0\""));
+  EXPECT_THAT(read_file(folder_ / "gate.xml"), HasSubstr("tests=\"2\" failures=\"0\""));
   EXPECT_THAT(read_file(folder_ / "summary.md"),
               testing::ContainsRegex("^before\n### MOS gate: REGRESSION(.|\n)*### MOS gate: pass"));
 
@@ -197,6 +197,39 @@ TEST_F(Compare, WritesThatItCouldNotJudge) {
   EXPECT_EQ(compare("coarse", {"-q"}).out, "");
   EXPECT_EQ(compare("out", {"--max-cost", "cpu=x", "--out", xml.string()}).exit_code, 2);
   EXPECT_THAT(read_file(xml), HasSubstr("errors=\"1\""));
+  for (const std::vector<std::string>& wrong : {std::vector<std::string>{"--max-dorp", "1"},
+                                                {"--max-drop", "x"},
+                                                {"more"},
+                                                {"--by", "scan"}}) {
+    ASSERT_EQ(compare("out", {"-o", xml.string()}).exit_code, 0);
+    fs::remove(summary);
+    std::vector<std::string> words = wrong;
+    words.insert(words.end(), {"-o", xml.string(), "--summary", summary.string()});
+    const cli::Answer misused = compare("out", words);
+    EXPECT_EQ(misused.exit_code, 2) << wrong.front();
+    EXPECT_EQ(misused.out, "");
+    EXPECT_THAT(read_file(xml), HasSubstr("<error message=\"MOS gate: not judged: "));
+    EXPECT_THAT(read_file(summary), testing::StartsWith("### MOS gate: not judged\n"));
+  }
+}
+
+TEST_F(Compare, WarnsThatRunsAreUnlikeWhereOnlyFailuresAreRead) {
+  run_again("coarse", {"--set", "voxel_size_m=0.4"});
+  const std::vector<std::string> words = {"--even-if", "--max-drop", "100"};
+  const auto shown = [&](const char* format) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), {"--as", format});
+    return compare("coarse", all).out;
+  };
+  EXPECT_THAT(shown("github"),
+              HasSubstr("::warning title=Runs are not alike::voxel_size_m: 0.25 -> 0.4"));
+  EXPECT_THAT(shown("junit"), HasSubstr("name=\"alike\"><skipped message=\"Runs are not alike: "));
+  EXPECT_THAT(compare("out", {"--as", "junit"}).out, HasSubstr("name=\"alike\"/>"));
+}
+
+TEST_F(Compare, SaysWhichSequencesThereAre) {
+  EXPECT_THAT(compare("out", {"--sequences", "99"}).err,
+              HasSubstr("baseline: has no sequence 99, expected room"));
 }
 
 TEST_F(Compare, WritesWhatDiffersWhereItIsAsked) {

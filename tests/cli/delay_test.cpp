@@ -79,7 +79,7 @@ TEST_F(Delay, IsRefusedWhereItMeansNothing) {
   EXPECT_THAT(refusal("all", "underwood"), testing::HasSubstr("does not judge whole tracks"));
   const cli::Answer both = run({"--preset", "offline", "--set", "delay_scans=3"});
   EXPECT_EQ(both.exit_code, 2);
-  EXPECT_THAT(both.err, testing::HasSubstr("expected 0 of one of them"));
+  EXPECT_THAT(both.err, testing::HasSubstr("expected delay=3, which judges no whole tracks"));
   const cli::Answer later = run({"--method", "hmm-mos", "--set", "variant=release-2025,delay=all"});
   EXPECT_EQ(later.exit_code, 2);
   EXPECT_THAT(later.err, testing::HasSubstr("in release-2025, which has no delay"));

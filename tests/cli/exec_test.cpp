@@ -82,6 +82,30 @@ TEST_F(Exec, TakesTheLabelsOfAProgramAndKeepsThem) {
   EXPECT_EQ(cli::contents(folder_ / "threads"), cli::contents(folder_ / "out"));
 }
 
+TEST_F(Exec, IsMeasuredByTheCpuOfItsProcesses) {
+  const auto cost_of = [&](const char* out, const std::string& before) {
+    const cli::Answer answer = cli::run(command(before + client(), out));
+    EXPECT_EQ(answer.exit_code, 0) << answer.err;
+    const auto json = nlohmann::json::parse(read_file(folder_ / out / "room/result.json"));
+    return std::pair(json.at("timing").at("program_cpu_s").get<double>(),
+                     json.at("timing").at("core_s").get<double>());
+  };
+  const auto [sleeping_s, slept_s] = cost_of("sleeps", "sleep 2; ");
+  EXPECT_GE(slept_s, 2.0);
+  EXPECT_LT(sleeping_s, slept_s - 1.5);
+  const auto [busy_s, taken_s] =
+      cost_of("works", "i=0; while [ $i -lt 1000000 ]; do i=$((i+1)); done; ");
+  EXPECT_GT(busy_s, sleeping_s + 0.1);
+  const cli::Answer profile =
+      cli::run({"profile", folder_ / "room", "--method", "exec:" + client()});
+  EXPECT_THAT(profile.out, HasSubstr("CPU is without the program, which took 0."));
+  const cli::Answer accepted =
+      cli::run({"compare", folder_ / "base", folder_ / "sleeps", "--accept"});
+  ASSERT_EQ(accepted.exit_code, 0) << accepted.err;
+  const auto base = nlohmann::json::parse(read_file(folder_ / "base/room/result.json"));
+  EXPECT_NEAR(base.at("cost").at("core_ms_per_scan").get<double>(), 1e3 * sleeping_s / 4, 1e-6);
+}
+
 TEST_F(Exec, IsRunAgainWhenItsFilesHaveChanged) {
   const std::string script = folder_.write("ours.sh", client() + "\n").string();
   const std::vector<std::string> words = command("sh '" + script + "'");

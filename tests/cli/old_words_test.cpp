@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "eval/cli/commands.hpp"
 #include "tests/cli/program.hpp"
 
 namespace mosbench {
@@ -164,6 +165,66 @@ TEST_F(OldWords, AreAllAmongTheLines) {
                                     }))
         << old.commands << ": " << old.flag;
   }
+}
+
+/// The command lines of a page: in backticks, or between fences.
+std::vector<std::vector<std::string>> lines_of_page(const std::string& page) {
+  std::vector<std::vector<std::string>> lines;
+  bool is_fenced = false;
+  std::istringstream text(page);
+  for (std::string line; std::getline(text, line);) {
+    if (line.starts_with("```")) is_fenced = !is_fenced;
+    std::istringstream parts(line);
+    bool is_code = is_fenced;
+    for (std::string part;
+         is_fenced ? bool(std::getline(parts, part)) : bool(std::getline(parts, part, '`'));) {
+      std::istringstream words(part);
+      if (is_code) lines.emplace_back();
+      for (std::string word; is_code && words >> word;) {
+        if (word == "mosbench" || word == "|" || word == "&&" || word.starts_with('#')) {
+          lines.emplace_back();
+        } else {
+          lines.back().push_back(word);
+        }
+      }
+      is_code = is_fenced || !is_code;
+    }
+  }
+  return lines;
+}
+
+/// History tells what was measured then.
+TEST_F(OldWords, AreOnNoPage) {
+  const std::filesystem::path source = MOSBENCH_SOURCE_DIR;
+  std::vector<std::filesystem::path> pages = {source / "README.md", source / "CONTRIBUTING.md"};
+  for (const char* folder : {"docs", "tests/examples", "results", "eval", "datasets"}) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / folder)) {
+      const bool is_history = entry.path().string().find("docs/history") != std::string::npos;
+      const auto ending = entry.path().extension();
+      if (!is_history && (ending == ".md" || ending == ".txt")) pages.push_back(entry.path());
+    }
+  }
+  std::size_t lines = 0;
+  for (const std::filesystem::path& page : pages) {
+    std::string text = read_file(page);
+    if (page.extension() == ".txt") text = "```\n" + text;  // of help
+    for (const std::vector<std::string>& words : lines_of_page(text)) {
+      if (words.empty() ||
+          std::ranges::find(commands(), words.front(), &Command::name) == commands().end())
+        continue;
+      ++lines;
+      const auto now = in_new_words(words, [](const auto&, const auto&) { return true; });
+      EXPECT_EQ(fmt::format("{}", fmt::join(now, " ")), fmt::format("{}", fmt::join(words, " ")))
+          << page;
+    }
+  }
+  EXPECT_GT(lines, 100U);
+}
+
+TEST_F(OldWords, TakeNoUnknownFlagForOne) {
+  const cli::Answer answer = ask("stats SIM --predictions OUT/run --id-map 0:9,1:251");
+  EXPECT_EQ(answer.exit_code, 2);
+  EXPECT_THAT(answer.err, testing::StartsWith("mosbench: --id-map: is no flag of mosbench stats"));
 }
 
 TEST_F(OldWords, AreNotInHelp) {

@@ -21,6 +21,8 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
 
+constexpr const char* kOldPage = "<!doctype html>mosbench";
+
 /// Ends a program that waits for what never comes.
 void give_a_minute() { alarm(60); }
 
@@ -47,12 +49,52 @@ class Outputs : public testing::Test {
 };
 
 TEST_F(Outputs, FollowALinkAndKeepIt) {
-  folder_.write("disk/page.html", "old");
+  folder_.write("disk/page.html", kOldPage);
   fs::create_symlink("disk/page.html", folder_ / "link.html");
   const cli::Answer answer = cli::run(report_to(folder_ / "link.html"));
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
   EXPECT_TRUE(fs::is_symlink(folder_ / "link.html"));
   EXPECT_THAT(read_file(folder_ / "disk/page.html"), StartsWith("<!"));
+}
+
+TEST_F(Outputs, ReplaceThoseOfBeforeAndNothingElse) {
+  const std::string run = (folder_ / "out").string(), result = run + "/room/result.json";
+  const auto to = [&](std::vector<std::string> words, const std::string& file) {
+    words.insert(words.end(), {"-o", file});
+    return cli::run(words);
+  };
+  const std::vector<std::string> rank = {"rank", run}, compare = {"compare", run, run};
+  folder_.write("page.html", "<html>mine</html>");
+  folder_.write("settings.json", "{\"max_range_m\": 30}");
+  folder_.write("job.yaml", "name: job\n");
+  folder_.write("binary.csv", std::string("a\0b", 3));
+  const std::string before = read_file(result);
+  for (const auto& [words, file] : {std::pair{rank, result},
+                                    {compare, result},
+                                    {rank, folder_ / "settings.json"},
+                                    {report_to("x"), folder_ / "page.html"},
+                                    {rank, folder_ / "page.html"},
+                                    {rank, folder_ / "job.yaml"},
+                                    {compare, folder_ / "job.yaml"},
+                                    {rank, folder_ / "binary.csv"}}) {
+    const std::string held = read_file(file);
+    std::vector<std::string> line = words;
+    if (line.front() == "report") line.resize(4);
+    const cli::Answer refused = to(line, file);
+    EXPECT_EQ(refused.exit_code, 2) << file;
+    EXPECT_THAT(refused.err, AllOf(HasSubstr(file + ": is there and no "),
+                                   HasSubstr(" that mosbench wrote, expected another name")));
+    EXPECT_EQ(read_file(file), held);
+  }
+  EXPECT_EQ(read_file(result), before);
+  for (const char* ending : {".txt", ".json", ".csv", ".tex", ".md", ".html", ".xml", ""}) {
+    for (int round = 0; round < 2; ++round) {
+      const std::string file = folder_ / ("gate" + std::string(ending));
+      EXPECT_EQ(to(compare, file).exit_code, 0) << ending;
+      const bool has_ranks = std::string_view(ending) != ".xml";
+      EXPECT_TRUE(!has_ranks || to(rank, file + "2" + ending).exit_code == 0) << ending;
+    }
+  }
 }
 
 TEST_F(Outputs, GoIntoAFifoThatStaysOne) {
@@ -112,14 +154,14 @@ TEST_F(Outputs, ThatNobodyReadsToTheirEndEndQuietly) {
 }
 
 TEST_F(Outputs, StopAtAFileSizeLimitWithoutALeftover) {
-  const fs::path file = folder_.write("pages/page.html", "old");
+  const fs::path file = folder_.write("pages/page.html", kOldPage);
   const cli::Answer answer = cli::run(report_to(file), [] {
     const struct rlimit small { 10'000, 10'000 };
     setrlimit(RLIMIT_FSIZE, &small);
   });
   EXPECT_EQ(answer.exit_code, 3);
   EXPECT_THAT(answer.err, HasSubstr("page.html: cannot be written (File too large)"));
-  EXPECT_EQ(read_file(file), "old");
+  EXPECT_EQ(read_file(file), kOldPage);
   EXPECT_EQ(std::distance(fs::directory_iterator(file.parent_path()), {}), 1);
 }
 

@@ -13,6 +13,7 @@ namespace {
 
 using nlohmann::ordered_json;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kDropAndNoise = "dropout_probability=0.5,pose_noise_m=0.05,seed=3";
 
@@ -68,6 +69,9 @@ TEST_F(PerturbedRuns, AreTheSameAsOfDataThatWereConvertedWithThem) {
   EXPECT_EQ(again.at("summary"), disturbed.at("summary"));
   EXPECT_EQ(again.at("provenance").at("fingerprint_without_poses"),
             disturbed.at("provenance").at("fingerprint_without_poses"));
+  const cli::Answer ranked = cli::run({"rank", path("disturbed"), path("again"), "--json"});
+  ASSERT_EQ(ranked.exit_code, 0) << ranked.err;
+  EXPECT_THAT(ranked.out, Not(HasSubstr("\"perturb\": \"none\"")));
 }
 
 TEST_F(PerturbedRuns, AreScoredWithAWordWhereTheTruthIsOfOtherScans) {

@@ -454,6 +454,12 @@ TEST_F(PredictionsTest, OfConfidencesAreMovingAboveOneHalf) {
   write("confident", file_of, confidences);
   EXPECT_EQ(summary(score(folder_ / "confident")), expected_);
   EXPECT_EQ(format(score(folder_ / "confident")), "npy");
+  const std::string scored = folder_ / "scored";
+  const auto known = nlohmann::json::parse(score(folder_ / "confident", {"--out", scored}).out);
+  const cli::Answer curve = cli::run({"stats", scored, "--by", "threshold", "--json"});
+  ASSERT_EQ(curve.exit_code, 0) << curve.err;
+  EXPECT_EQ(nlohmann::json::parse(curve.out).at("average_precision"),
+            known.at("confidences").at("average_precision"));
   // As 4DMOS leaves them: a folder per scan, with what it says of earlier scans as well.
   write(
       "4dmos/confidences/room",

@@ -45,6 +45,23 @@ TEST_F(RunMethods, GiveTheFilesOfEachMethodRunAlone) {
   EXPECT_THAT(answer.out, HasSubstr("results in " + (folder_ / "out/underwood").string()));
 }
 
+TEST_F(RunMethods, SayInEachBlockThatTheDataAreSimulated) {
+  const std::string data = folder_ / "sim";
+  ASSERT_EQ(cli::run({"simulate", "--layout", "semantickitti", "--scene", "room", "--scans", "4",
+                      "--seed", "1", "--out", data})
+                .exit_code,
+            0);
+  for (const char* format : {"text", "markdown", "html"}) {
+    const cli::Answer answer = cli::run(
+        {"run", data, "--method", "yoon,underwood", "--out", folder_ / "both", "--as", format});
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+    const std::size_t second = answer.out.find("Underwood et al., preset");
+    ASSERT_NE(second, std::string::npos) << answer.out;
+    EXPECT_NE(answer.out.find("SIMULATED data"), std::string::npos);
+    EXPECT_NE(answer.out.find("SIMULATED data", second), std::string::npos) << format;
+  }
+}
+
 TEST_F(RunMethods, ShareThePosesThatOdometryFinds) {
   const std::vector<std::string> odometry = {"--odometry", "kiss", "--odometry-set",
                                              "min_range_m=1"};

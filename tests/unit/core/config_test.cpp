@@ -77,7 +77,8 @@ TEST(Config, HasAWindowOfTracksOfASecondOrMoreInsteadOfADelay) {
   EXPECT_EQ(complaint_about(config), "");
   config.delay_scans = 1;
   EXPECT_EQ(complaint_about(config),
-            "delay_scans: is set beside track_window_s, expected 0 of one of them");
+            "delay_scans: is set beside track_window_s, expected delay=1, which judges no whole "
+            "tracks");
 }
 
 TEST(Config, RefusesNumbersThatAreNone) {

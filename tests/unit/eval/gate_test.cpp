@@ -95,11 +95,11 @@ ResultSet run_that_cost(const RunCost& cost) {
 }
 
 TEST(Gate, ComparesCpuByTheSpeedOfBothMachines) {
-  const ResultSet slow = run_that_cost({40.0, 10.0, 100.0, 1000});
-  const ResultSet fast = run_that_cost({22.0, 5.0, 130.0, 1000});
+  const ResultSet slow = run_that_cost({4000.0, 10.0, 100.0, 1000});
+  const ResultSet fast = run_that_cost({2200.0, 5.0, 130.0, 1000});
   const auto checks = check_costs(slow, fast, cost_limits("--max-cost", "cpu=9"));
   ASSERT_EQ(checks.size(), 3U);
-  EXPECT_NEAR(checks[0].growth(), 0.1, 1e-12) << "44 ms on the slower machine";
+  EXPECT_NEAR(checks[0].growth(), 0.1, 1e-12) << "4400 ms on the slower machine";
   EXPECT_FALSE(checks[0].passed());
   EXPECT_FALSE(checks[1].is_within());
   EXPECT_TRUE(checks[1].passed()) << "a warning";
@@ -107,12 +107,59 @@ TEST(Gate, ComparesCpuByTheSpeedOfBothMachines) {
   EXPECT_TRUE(check_costs(slow, fast, cost_limits("--max-cost", "cpu=10"))[0].passed());
   const GateResult result{GateRule::kMaxDrop, {}, checks};
   EXPECT_FALSE(result.passed());
+  EXPECT_THAT(render({.sheets = {cost_sheet(result)}}, Format::kText),
+              testing::AllOf(
+                  testing::ContainsRegex("CPU ms per scan +4000.0 +4400.0 +10.0 +9.0  REGRESSION"),
+                  testing::ContainsRegex("most memory, MiB .* warning"),
+                  testing::HasSubstr("new CPU ms per scan as on the baseline's machine, by the "
+                                     "calibrations: times 2.00")));
+  const auto told = gate_checks(result);
+  ASSERT_EQ(told.size(), 3U);
+  EXPECT_EQ(told[0].title, "CPU ms per scan grew");
+  EXPECT_EQ(told[0].severity, CheckResult::Severity::kFailure);
+  EXPECT_EQ(told[1].title, "most memory, MiB grew");
+  EXPECT_EQ(told[1].severity, CheckResult::Severity::kWarning);
+  EXPECT_TRUE(told[2].passed());
+}
+
+TEST(Gate, ComparesCpuOfOneMachineAsItWasMeasured) {
+  RunCost before{4000.0, 10.0, 100.0, 1000, Machine{"a", 8, 1024.0, "Linux"}}, after = before;
+  after.calibration_ms = 5.0;
+  const auto growth = [&] {
+    return check_costs(run_that_cost(before), run_that_cost(after), {})[0].growth();
+  };
+  EXPECT_EQ(growth(), 0.0) << "calibrations of one machine differ by its load";
+  after.machine->processor = "b";
+  EXPECT_EQ(growth(), 1.0);
+}
+
+TEST(Gate, JudgesNoCpuOfShortRunsAndNoBytesOfOtherFiles) {
+  RunCost before{400.0, 10.0, 100.0, 1000, {}, {"labels"}}, after = before;
+  after.core_ms_per_scan = 499.0;  // of 4 scans
+  after.bytes_written = 2000;
+  after.what_written.emplace_back("scores");
+  const CostLimits limits = cost_limits("--max-cost", "cpu=1,bytes=1");
+  const auto checks = check_costs(run_that_cost(before), run_that_cost(after), limits);
+  ASSERT_EQ(checks.size(), 3U);
+  EXPECT_EQ(checks[0].unjudged, "too short to judge: 2.0 s of CPU, expected at least 2 s");
+  EXPECT_EQ(checks[2].unjudged, "not compared: labels before, labels, scores now");
+  const GateResult result{GateRule::kMaxDrop, {}, checks};
+  EXPECT_TRUE(result.passed());
+  const Answer answer{.standing = Standing{.simulated = true, .doubts = {"one", "two"}},
+                      .sheets = {cost_sheet(result)},
+                      .checks = gate_checks(result)};
+  EXPECT_THAT(render(answer, Format::kText),
+              testing::ContainsRegex("CPU ms per scan +400.0 +499.0 .* not judged"));
+  EXPECT_THAT(render(answer, Format::kGithub),
+              testing::HasSubstr("::warning title=CPU ms per scan not judged::too short to judge: "
+                                 "2.0 s of CPU, expected at least 2 s [SIMULATED data: not "
+                                 "comparable with published numbers; one; and 1 more]\n"));
   EXPECT_THAT(
-      render({.sheets = {cost_sheet(result)}}, Format::kText),
-      testing::AllOf(testing::ContainsRegex("CPU ms per scan +40.0 +44.0 +10.0 +9.0  REGRESSION"),
-                     testing::ContainsRegex("most memory, MiB .* warning")));
-  ASSERT_EQ(gate_checks(result).size(), 1U) << "a warning is no check";
-  EXPECT_EQ(gate_checks(result)[0].title, "CPU ms per scan grew");
+      render(answer, Format::kJunit),
+      testing::AllOf(testing::HasSubstr("tests=\"3\" failures=\"0\" errors=\"0\" skipped=\"2\""),
+                     testing::HasSubstr("<skipped message=\"CPU ms per scan not judged: ")));
+  after.core_ms_per_scan = 501.0;
+  EXPECT_FALSE(check_costs(run_that_cost(before), run_that_cost(after), limits)[0].passed());
 }
 
 TEST(Gate, ComparesCpuPerScanAloneWhereScansDiffer) {

@@ -249,6 +249,24 @@ TEST(Leaderboard, NamesTheRowWhereSeveralAreOfOneMethod) {
               ElementsAre(HasSubstr("HMM-MOS (row 2) is not compared with HMM-MOS (row 1)")));
 }
 
+TEST(Leaderboard, TellsOfEachRowWhatIsDoubtfulAboutIt) {
+  std::vector<ResultSet> runs = {run_of("a", 900, 1.0), run_of("b", 850, 2.0)};
+  for (ResultSet& run : runs) {
+    for (Result& sequence : run.sequences) sequence.scans.front().counts->tn = 1;  // no doubt
+  }
+  runs[1].sequences[0].doubts = {"7 scans are odd"};
+  runs[1].sequences[1].doubts = {"9 scans are odd"};
+  const Answer answer = leaderboard_answer(leaderboard_of(runs));
+  const std::string csv = render(answer, Format::kCsv), latex = render(answer, Format::kLatex);
+  EXPECT_THAT(csv, testing::ContainsRegex("\na,,00/result.json,all,[^\n]*,\n"));
+  EXPECT_THAT(csv, testing::ContainsRegex(
+                       "\nb,[^\n]*,all,[^\n]*,00: 7 scans are odd; 01: 9 scans are odd\n"));
+  EXPECT_THAT(csv, testing::ContainsRegex("\nb,[^\n]*,00,[^\n]*,00: 7 scans are odd\n"));
+  EXPECT_THAT(latex, testing::ContainsRegex("\n1 & a & [^\n$]*\n2 & b & [^\n]*\\$\\^\\{a\\}\\$"));
+  EXPECT_THAT(latex, HasSubstr("{$^{a}$ 00: 7 scans are odd}"));
+  EXPECT_THAT(latex, testing::Not(HasSubstr("9 scans are odd"))) << "one line of a kind";
+}
+
 TEST(Leaderboard, IsPrintedInEveryFormat) {
   const std::vector<ResultSet> runs = {run_of("a_b", 900, 1.0), run_of("c", 850, 2.0)};
   const Leaderboard board = leaderboard_of(runs);

@@ -489,7 +489,8 @@ TEST(StudyScoring, IsNamedInEveryTable) {
   EXPECT_THAT(render(answer, Format::kText),
               AllOf(HasSubstr("protocol mapmos: pooled; "), HasSubstr("(1 to 20 m)")));
   EXPECT_THAT(render(answer, Format::kLatex),
-              HasSubstr("\\multicolumn{8}{l}{protocol mapmos (1 to 20 m)}"));
+              HasSubstr("\\multicolumn{8}{l}{protocol mapmos (1 to 20 m); INCOMPLETE: 3 cells are "
+                        "missing}"));
   EXPECT_THAT(render(answer, Format::kCsv),
               AllOf(HasSubstr("state,protocol,min_range_m,max_range_m,iou"),
                     HasSubstr(",done,mapmos,1,20,0.5,")));
@@ -497,6 +498,27 @@ TEST(StudyScoring, IsNamedInEveryTable) {
   EXPECT_EQ(json.at("protocol"), "mapmos");
   EXPECT_EQ(json.at("min_range_m"), 1.0);
   EXPECT_EQ(json.at("max_range_m"), 20.0);
+}
+
+TEST(StudyTable, SaysADoubtOncePerKindAndAtItsRows) {
+  const TempFolder folder;
+  const Study study = parse_study(without_disturbances(), "s.yaml");
+  StudyPlan plan = plan_study(study, folder.path());
+  for (PlannedCell& planned : plan.cells) mark_done(planned, 0.5, 1);
+  for (const std::size_t near : {1U, 3U}) {
+    ASSERT_EQ(plan.cells[near].cell.label(), "near");
+    plan.cells[near].numbers.doubts = {fmt::format("{} scans are odd", near)};
+  }
+  const StudyTable table = gather(plan);
+  ASSERT_EQ(table.doubts.size(), 1U);
+  EXPECT_THAT(table.doubts[0], testing::EndsWith(": 1 scans are odd"));
+  const Answer answer = study_answer(plan, table);
+  const std::string latex = render(answer, Format::kLatex);
+  EXPECT_THAT(latex, testing::ContainsRegex("\nhmm-mos & [^$]*\nnear & [^\n]*\\$\\^\\{a\\}\\$"));
+  EXPECT_THAT(latex, AllOf(HasSubstr("{$^{a}$ 1 scans are odd}"),
+                           testing::Not(HasSubstr("3 scans are odd"))));
+  EXPECT_THAT(render(answer, Format::kCsv),
+              testing::ContainsRegex("\n[^\n]*near[^\n]*published numbers; 3 scans are odd\n"));
 }
 
 TEST(StudyTable, SaysWhyAMeanIsUndefined) {
