@@ -32,24 +32,26 @@ struct Config {
   hmm_mos::Config map = paper_map();
   double seed_age_s = 1.5;
   double object_age_s = 2.0;
-  int max_unknown_voxels = 15;
-  int max_gap_voxels = 3;
-  int ground_radius_voxels = 2;
-  int ground_layers_voxels = 1;
-  int min_seeds_voxels = 3;
-  int min_pure_seeds_voxels = 2;
-  double min_seed_share = 0.12;
   double fresh_age_s = 0.2;
-  double min_fresh_share = 0.2;
+  double min_seed_share = 0.12;
   double max_aged_share = 0.5;
   double max_settled_share = 0.3;
-  double rise_radius_m = 6.0;
-  int min_rise_voxels = 2;
   double max_growth_m = 3.0;
   double max_extent_m = 10.0;
-  double max_pure_extent_m = 20.0;
-  double max_height_m = 4.5;
-  int min_track_steps = 1;
+
+  // No settings: nobody gains by other values on his own sensor.
+  int max_unknown_voxels = 15;      ///< of the 125 voxels around a seed
+  int max_gap_voxels = 3;           ///< unknown between known ones above and below: between beams
+  int ground_radius_voxels = 2;     ///< the ground is the lowest voxel of the columns around
+  int ground_layers_voxels = 1;     ///< so high above the ground voxels connect nothing
+  int min_seeds_voxels = 3;         ///< of an object
+  int min_pure_seeds_voxels = 2;    ///< of one that consists of seeds by half or more
+  double min_fresh_share = 0.2;     ///< of an object's seeds: those of a parked car grow old
+  double rise_radius_m = 6.0;       ///< of the ground around an object
+  int min_rise_voxels = 2;          ///< above that, of a quarter of an object
+  double max_pure_extent_m = 20.0;  ///< as max_extent_m, of what consists of seeds: trucks
+  double max_height_m = 4.5;        ///< of an object
+  int min_track_steps = 1;          ///< before the next place is predicted; 0: never
 };
 
 /// The settings that it shares with the paper's method.
@@ -70,25 +72,10 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
   visit("object_age_s", config.object_age_s, FieldRange{0.0, kMaxAge_s},
         "how long after its arrival a settled voxel still connects objects; an aged one belongs to "
         "an object for half as long; to tenths");
-  visit("max_unknown_voxels", config.max_unknown_voxels, FieldRange{0, 125},
-        "at most so many of the 125 voxels around a seed are unknown");
-  visit("max_gap_voxels", config.max_gap_voxels, FieldRange{0, kMaxHalo - kKnownRadius},
-        "unknown voxels between known ones above and below, if so many or fewer, count as known: "
-        "gaps between beams");
-  visit("ground_radius_voxels", config.ground_radius_voxels, FieldRange{0, kBlockSide},
-        "the ground is the lowest voxel in the columns within this distance");
-  visit("ground_layers_voxels", config.ground_layers_voxels, FieldRange{0, 100},
-        "voxels at most this high above the ground connect nothing");
-  visit("min_seeds_voxels", config.min_seeds_voxels, FieldRange{1, 100000},
-        "an object has at least so many seeds");
-  visit("min_pure_seeds_voxels", config.min_pure_seeds_voxels, FieldRange{1, 100000},
-        "an object that consists of seeds by half or more needs only so many");
   visit("min_seed_share", config.min_seed_share, FieldRange{0.0, 1.0},
         "at least this share of an object's voxels are seeds");
   visit("fresh_age_s", config.fresh_age_s, FieldRange{0.0, kMaxAge_s},
         "a seed is fresh for so long; to tenths; from seed_age_s on every seed is");
-  visit("min_fresh_share", config.min_fresh_share, FieldRange{0.0, 1.0},
-        "at least this share of an object's seeds is fresh: those of a parked car grow old");
   visit("max_aged_share", config.max_aged_share, FieldRange{0.0, 1.0},
         "at most this share of an object's voxels was seen occupied for 0.5 s or more, unless half "
         "or more are seeds");
@@ -96,21 +83,10 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
       "max_settled_share", config.max_settled_share, FieldRange{0.0, 1000.0},
       "settled voxels beside an object, per voxel of its own: with more it is part of what stands, "
       "unless four fifths of it arrived");
-  visit("rise_radius_m", config.rise_radius_m, FieldRange{0.0, 20.0},
-        "the ground around a voxel is the lowest one in the columns within this distance");
-  visit("min_rise_voxels", config.min_rise_voxels, FieldRange{0, 100},
-        "a quarter of an object's voxels are at least this high above the ground around them");
   visit("max_growth_m", config.max_growth_m, FieldRange{0.0, 1000.0},
         "how far motion spreads from seeds; never through standing voxels");
   visit("max_extent_m", config.max_extent_m, FieldRange{0.0, 1000.0},
         "an object is at most so long along x and y of the map");
-  visit("max_pure_extent_m", config.max_pure_extent_m, FieldRange{0.0, 1000.0},
-        "an object that consists of seeds by half or more may be so long: a truck or a bus");
-  visit("max_height_m", config.max_height_m, FieldRange{0.0, 1000.0},
-        "an object is at most so high");
-  visit("min_track_steps", config.min_track_steps, FieldRange{0, 1000},
-        "after so many scans an object's next place is predicted, also when found by looking back; "
-        "0: no prediction and no looking back; not used with a delay");
 }
 
 /// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field
