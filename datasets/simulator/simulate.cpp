@@ -291,13 +291,15 @@ std::vector<std::string> simulate(
         layout.writer->open(options.out / recording.folder,
                             {.scans = sequence->size(),
                              .camera_from_lidar = tr,
-                             .radial_velocities = sequence->recording().has_radial_velocities});
+                             .radial_velocities = sequence->recording().has_radial_velocities,
+                             .mark = format_simulated_origin(origin)});
     writers.push_back({std::move(sequence), std::move(files)});
   }
   claim_folder(options.out, origin);
   for (const SimulatedRecording& recording : recordings) {
-    const fs::path folder = options.out / mark_folder_of(*layout.writer, recording.folder);
-    write_file_atomic(folder / kSimulatedMarker, format_simulated_origin(origin));
+    const auto folder = mark_folder_of(*layout.writer, recording.folder);
+    if (!folder) continue;
+    write_file_atomic(options.out / *folder / kSimulatedMarker, format_simulated_origin(origin));
   }
   write_file_atomic(options.out / "README.txt", readme(origin, layout));
   write_file_atomic(options.out / "scene.json", format_scene(scene));

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
 #include "datasets/doctor/doctor.hpp"
@@ -81,23 +82,28 @@ std::string split_warning(const std::string& split) {
       split);
 }
 
+std::string doubt_about(const std::vector<DoubtfulPose>& doubtful, std::size_t poses) {
+  if (doubtful.empty()) return "";
+  const auto& [stem, doubt] = doubtful.front();
+  return fmt::format("{} of {} found are doubtful, first that of scan {}: {}", doubtful.size(),
+                     counted(poses, "pose"), stem, doubt);
+}
+
 std::vector<std::string> doubts_of(const Result& result) {
   std::vector<std::string> doubts = result.doubts;
-  // Older results do not say it among their doubts.
-  const std::string disturbed = disturbed_doubt(mark_of(result));
-  const bool is_said = disturbed.empty() || std::ranges::find(doubts, disturbed) != doubts.end();
-  if (!is_said) doubts.push_back(disturbed);
+  // Older results do not say these among their doubts.
+  for (std::string& doubt :
+       std::array{disturbed_doubt(mark_of(result)),
+                  doubt_about(result.doubtful_poses.value_or(std::vector<DoubtfulPose>()),
+                              result.scans.size())}) {
+    const bool is_said = doubt.empty() || std::ranges::find(doubts, doubt) != doubts.end();
+    if (!is_said) doubts.push_back(std::move(doubt));
+  }
   if (auto changed = changed_labels(result)) doubts.push_back(std::move(*changed));
   if (const auto changed = changed_program_file(result)) {
     doubts.push_back(fmt::format("STALE: {} has changed since", changed->string()));
   }
   add_doubts_of_truth(result, doubts);
-  if (result.doubtful_poses && !result.doubtful_poses->empty()) {
-    const DoubtfulPose& first = result.doubtful_poses->front();
-    doubts.push_back(fmt::format("{} of {} found are doubtful, first that of scan {}: {}",
-                                 result.doubtful_poses->size(),
-                                 counted(result.scans.size(), "pose"), first.stem, first.doubt));
-  }
   if (!result.scans.empty() && std::ranges::none_of(result.scans, &ScanRow::judged)) {
     doubts.push_back(fmt::format("all {} labelled static without detection",
                                  counted(result.scans.size(), "scan is", "scans are")));
@@ -276,8 +282,7 @@ Standing standing_of(std::span<const NamedMark> marks) {
   std::vector<Doubt> doubts;
   for (const auto& [place, mark] : marks) {
     if (mark.simulated) add_origin(words_of(*mark.simulated), standing);
-    std::string disturbed = disturbed_doubt(mark);
-    if (!disturbed.empty()) doubts.push_back({place, std::move(disturbed)});
+    for (const std::string& doubt : mark.doubts) doubts.push_back({place, doubt});
   }
   standing.doubts = told(doubts);
   return standing;
