@@ -6,13 +6,16 @@
 #include <cstdlib>
 #include <map>
 #include <mutex>
+#include <set>
 
 #include "core/base/thread_pool.hpp"
+#include "datasets/disk/files.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/protocols/benchmark_split.hpp"
 #include "eval/protocols/metrics.hpp"
+#include "eval/result/result_file.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {
@@ -89,12 +92,9 @@ Frame frame_to_score(const Sequence& sequence, std::size_t k, const ScoreTask& t
 }
 
 /// One row per rule.
-std::vector<ScanRow> score_one(const Frame& frame, const std::string& stem, std::size_t k,
-                               const ScoreTask& task, const Predictions& labels,
-                               std::span<const double> confidences) {
-  const std::optional<Confusion> counted = labels.counts(k);
-  const std::vector<std::uint32_t> predicted =
-      counted ? std::vector<std::uint32_t>{} : labels.labels(k, confidences);
+std::vector<ScanRow> score_one(const Frame& frame, const std::string& stem, const ScoreTask& task,
+                               const std::optional<Confusion>& counted,
+                               std::span<const std::uint32_t> predicted) {
   const LabelHash hash = hash_of_labels(*frame.truth);
   std::vector<ScanRow> rows;
   for (const ScoreRule& rule : task.rules) {
@@ -124,24 +124,44 @@ void check_rules_of_counts(const OpenedPredictions& opened, const ScoreTask& tas
   }
 }
 
+/// The scans of the run that wrote a folder of labels, by stem; none where no run did.
+std::map<std::string, ScanRow> scans_of_run(const std::filesystem::path& labels) {
+  std::map<std::string, ScanRow> scans;
+  const std::filesystem::path file = labels.parent_path() / "result.json";
+  try {
+    if (labels.filename() != "labels" || !is_there(file)) return scans;
+    for (ScanRow& row : read_result(file).scans) scans.emplace(row.stem, std::move(row));
+  } catch (const DataError&) {  // of another program
+  }
+  return scans;
+}
+
 void score_scans(const Sequence& sequence, const std::vector<std::size_t>& scans,
                  const ScoreTask& task, ThreadPool& pool, SequenceScores& scores) {
   for (auto& rows : scores.by_rule) rows.resize(scans.size());
   Progress progress("score " + sequence.name(), scans.size());
   std::mutex progress_mutex;
+  const std::map<std::string, ScanRow> of_run = scans_of_run(scores.opened->path);
+  std::set<std::string> changed;
   pool.for_ranges(scans.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) {
       const Predictions& labels = *scores.opened->labels;
       const Frame frame = frame_to_score(sequence, scans[i], task);
       const std::vector<double> confidences = labels.confidences(scans[i]);
-      std::vector<ScanRow> rows =
-          score_one(frame, sequence.stem(scans[i]), scans[i], task, labels, confidences);
+      const std::string& stem = sequence.stem(scans[i]);
+      const std::optional<Confusion> counted = labels.counts(scans[i]);
+      const std::vector<std::uint32_t> predicted =
+          counted ? std::vector<std::uint32_t>{} : labels.labels(scans[i], confidences);
+      const auto row = of_run.find(stem);
+      const bool is_changed = row != of_run.end() && !are_labels_of(row->second, predicted);
+      std::vector<ScanRow> rows = score_one(frame, stem, task, counted, predicted);
       ScoreCounts counts;
       if (!confidences.empty()) {
         counts.add({*frame.truth, confidences, frame.points, *rows.front().counts},
                    task.rules.front());
       }
       const std::lock_guard lock(progress_mutex);
+      if (is_changed) changed.insert(stem);
       if (!confidences.empty()) {
         if (!scores.confidences) scores.confidences.emplace();
         *scores.confidences += counts;
@@ -150,6 +170,10 @@ void score_scans(const Sequence& sequence, const std::vector<std::size_t>& scans
       progress.advance();
     }
   });
+  if (changed.empty()) return;
+  scores.opened->doubts.push_back(
+      fmt::format("LABELS CHANGED after the run: {} of {} are not what it wrote, first {}.label",
+                  changed.size(), counted(scans.size(), "label file"), *changed.begin()));
 }
 
 /// Adds doubts when nothing or most is predicted moving, and when labels fit other scans better.

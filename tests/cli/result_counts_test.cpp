@@ -125,6 +125,14 @@ TEST(ResultLabels, ThatWereReplacedAfterTheRunAreADoubtOfEveryTable) {
       EXPECT_THAT(cli::run(all).out, testing::HasSubstr(whole)) << words.front() << as;
     }
   }
+  // Others of equal number and size are told by who reads them.
+  std::filesystem::copy_file(labels + "000000.label", labels + "000001.label");
+  std::filesystem::copy_file(labels + "000000.label", labels + "000002.label",
+                             std::filesystem::copy_options::overwrite_existing);
+  folder.write("out/room/labels/000003.label", std::string(4 * 8640, '\t'));
+  EXPECT_THAT(cli::run({"score", folder / "room", "--predictions", out}).out,
+              testing::HasSubstr("LABELS CHANGED after the run: 1 of 4 label files are not what "
+                                 "it wrote, first 000003.label"));
   // A result alone, as of a baseline, has none that could be others.
   std::filesystem::remove_all(labels);
   EXPECT_THAT(cli::run({"stats", out}).out, testing::Not(testing::HasSubstr(doubt)));
