@@ -112,10 +112,9 @@ void check_sensor(const Layout& layout, const Scene& scene) {
 constexpr std::size_t kMostScans = 1'000'000;
 
 SimulatedOrigin origin_of(const SimulateOptions& options, const Scene& scene) {
-  const std::string text = format_scene(scene);
   return {.layout = std::string(to_string(options.layout)),
           .scene = scene.name,
-          .scene_fingerprint = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size())),
+          .scene_fingerprint = fingerprint_of(scene),
           .scans = options.scans,
           .seed = options.seed,
           .perturb = options.perturb ? std::optional(to_string(*options.perturb)) : std::nullopt};
@@ -257,6 +256,16 @@ std::unique_ptr<Sequence> simulated_sequence(const SimulateOptions& options, con
       std::make_unique<SimulatedSequence>(options, scene, simulated);
   if (!options.perturb) return sequence;
   return perturbed(std::move(sequence), *options.perturb);
+}
+
+std::string fingerprint_of(const Scene& scene) {
+  const std::string text = format_scene(scene);
+  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+}
+
+bool simulates_several(DatasetKind kind) {
+  const Layout& layout = layout_of(kind);
+  return layout.simulation && layout.simulation->recordings.size() > 1;
 }
 
 std::vector<std::string> simulated_names(DatasetKind layout, const Scene& scene) {

@@ -4,12 +4,9 @@
 #include <functional>
 #include <map>
 #include <regex>
-#include <set>
 #include <string>
 #include <vector>
 
-#include "datasets/hdf5/hdf5_module.hpp"
-#include "datasets/layouts/dataset.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -248,55 +245,6 @@ TEST(SimulatedMark, IsInEveryLayoutThatIsSimulated) {
   }
 }
 
-/// What a data set says of its sequences: "simulated", "disturbed", both or "".
-std::multiset<std::string> marks_below(const fs::path& root) {
-  std::multiset<std::string> marks;
-  for (const auto& sequence : open_dataset(root, {}).sequences) {
-    const DataMark& mark = sequence->mark();
-    marks.insert(std::string(mark.simulated ? "simulated" : "") +
-                 (mark.disturbed.empty() ? "" : "disturbed"));
-  }
-  return marks;
-}
-
-TEST(DataMarks, AreOfEachSequenceInEveryLayout) {
-  const TempFolder folder;
-  cli::write_small_sequence(folder / "clean", 6);
-  succeed({"convert", folder / "clean", "--perturb", "range_noise_m=0.02,seed=3", "--layout",
-           "semantickitti", "--out", folder / "changed"});
-  for (const char* seed : {"1", "2"}) {
-    succeed({"simulate", "--layout", "semantickitti", "--scene", "room", "--scans", "6", "--seed",
-             seed, "--out", folder / seed});
-  }
-  const fs::path set = folder / "set/sequences";
-  fs::create_directories(set);
-  fs::rename(folder / "clean", set / "00");
-  fs::rename(folder / "changed/sequences/clean", set / "01");
-  fs::rename(folder / "1/sequences/08", set / "02");
-  fs::rename(folder / "2/sequences/08", set / "03");
-  const std::multiset<std::string> expected = {"", "disturbed", "simulated", "simulated"};
-  ASSERT_EQ(marks_below(folder / "set"), expected);
-  for (const char* layout :
-       {"doals", "doals-bag", "sipailou", "helimos", "semantickitti", "opensceneflow", "nuscenes",
-        "helipr", "kitti-raw", "kitti-tracking", "ros2-mcap", "ros2-db3"}) {
-    if (std::string_view(layout) == "opensceneflow" && !has_hdf5()) continue;
-    const fs::path out = folder / layout;
-    succeed({"convert", folder / "set", "--layout", layout, "--out", out});
-    EXPECT_EQ(marks_below(out), expected) << layout;
-  }
-  if (!has_hdf5()) return;
-  // A file alone has its mark with it.
-  fs::create_directories(folder / "alone");
-  for (const char* name : {"01.h5", "02.h5"}) {
-    fs::rename(folder / "opensceneflow" / name, folder / "alone" / name);
-  }
-  EXPECT_EQ(marks_below(folder / "alone"), (std::multiset<std::string>{"disturbed", "simulated"}));
-  succeed({"simulate", "--layout", "opensceneflow", "--scene", "room", "--scans", "6", "--seed",
-           "1", "--out", folder / "flow"});
-  fs::rename(folder / "flow/room.h5", folder / "room.h5");
-  EXPECT_EQ(marks_below(folder / "room.h5"), std::multiset<std::string>{"simulated"});
-}
-
 /// Sequence "room" with faults that only a part of it has.
 fs::path doubtful_sequence(const TempFolder& folder) {
   const fs::path room = folder / "room";
@@ -356,9 +304,9 @@ TEST(Doubts, AreSaidOfATruthWithOneClassAlone) {
   EXPECT_THAT(run.out, HasSubstr("by the truth no counted point of 5 scans moves"));
 }
 
-class Writers : public testing::Test {
+class MarkWriters : public testing::Test {
  protected:
-  Writers() {
+  MarkWriters() {
     cli::write_small_sequence(folder_ / "room", 5);
     succeed({"run", room_, "--out", out_});
   }
@@ -366,7 +314,7 @@ class Writers : public testing::Test {
   const std::string room_ = (folder_ / "room").string(), out_ = (folder_ / "out").string();
 };
 
-TEST_F(Writers, OfScoresReplaceNoOthers) {
+TEST_F(MarkWriters, OfScoresReplaceNoOthers) {
   const std::string kept = (folder_ / "scores").string();
   const std::vector<std::string> words = {"score", room_, "--predictions", out_, "--out", kept};
   const auto with = [&](std::vector<std::string> more) {
@@ -387,7 +335,7 @@ TEST_F(Writers, OfScoresReplaceNoOthers) {
   EXPECT_NE(cli::contents(kept), before);
 }
 
-TEST_F(Writers, WriteWhatTheNameSays) {
+TEST_F(MarkWriters, WriteWhatTheNameSays) {
   const auto written = [&](const std::string& name, std::vector<std::string> words) {
     const std::string file = (folder_ / name).string();
     words.insert(words.end(), {"-o", file});
@@ -403,7 +351,7 @@ TEST_F(Writers, WriteWhatTheNameSays) {
   EXPECT_THAT(written("t.png", {"render", out_, "--scans", "4"}), HasSubstr("PNG"));
 }
 
-TEST_F(Writers, RefuseNamesOfOtherKindsOfFiles) {
+TEST_F(MarkWriters, RefuseNamesOfOtherKindsOfFiles) {
   const auto fault_of = [&](const std::string& name, std::vector<std::string> words) {
     const fs::path file = folder_ / name;
     words.insert(words.end(), {"-o", file.string()});
@@ -422,7 +370,7 @@ TEST_F(Writers, RefuseNamesOfOtherKindsOfFiles) {
   EXPECT_THAT(fault_of("x.pdf", {"compare", out_, out_}), HasSubstr("ends in .md"));
 }
 
-TEST_F(Writers, NameTheFileAndWhatItLacks) {
+TEST_F(MarkWriters, NameTheFileAndWhatItLacks) {
   const fs::path file = folder_ / "out/room/result.json";
   const std::string whole = read_file(file);
   const auto fault_without = [&](const std::vector<std::string>& path) {
