@@ -108,8 +108,9 @@ constexpr const char* kExpected = "a whole HDF5 file of OpenSceneFlow, with grou
 /// No filter of libhdf5 packs numbers more than zlib, 1032 to 1.
 constexpr std::uint64_t kMostPacked = 2048;
 
-std::string packed(const std::vector<Hdf5Group>& groups) {
+std::string packed(const std::vector<Hdf5Group>& groups, const std::string& mark) {
   ByteSink sink;
+  sink.put_counted(mark);
   for (const Hdf5Group& group : groups) {
     sink.put_counted(group.name);
     sink.put(static_cast<std::uint32_t>(group.arrays.size()));
@@ -139,8 +140,7 @@ Hdf5Array take_array(ByteCursor& cursor) {
   return array;
 }
 
-std::vector<Hdf5Group> unpacked(std::string_view bytes, const std::filesystem::path& file) {
-  ByteCursor cursor(bytes, file, "the list of its groups");
+std::vector<Hdf5Group> unpacked(ByteCursor& cursor) {
   std::vector<Hdf5Group> groups;
   while (!cursor.rest().empty()) {
     Hdf5Group& group = groups.emplace_back();
@@ -245,10 +245,14 @@ Hdf5File::Hdf5File(std::filesystem::path path, std::span<const std::string_view>
   const Hdf5Functions& functions = hdf5_functions(path_);
   const CopyAnswer listing = in_process_copy([&] {
     std::vector<Hdf5Group> groups;
-    throw_if_failed(functions.list(path_, names, groups));
-    return packed(groups);
+    std::string mark;
+    throw_if_failed(functions.list(path_, names, groups, mark));
+    return packed(groups, mark);
   });
-  groups_ = unpacked(answer_of(listing, path_), path_);
+  const std::string bytes = answer_of(listing, path_);
+  ByteCursor cursor(bytes, path_, "the list of its groups");
+  mark_ = cursor.take_counted();
+  groups_ = unpacked(cursor);
   for (const Hdf5Group& group : groups_) {
     for (const Hdf5Array& array : group.arrays) check(group, array);
   }

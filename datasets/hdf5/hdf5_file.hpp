@@ -40,6 +40,8 @@ class Hdf5File {
   const std::filesystem::path& path() const { return path_; }
   /// In the order of the file.
   const std::vector<Hdf5Group>& groups() const { return groups_; }
+  /// What mosbench wrote about the whole file; may be empty.
+  const std::string& mark() const { return mark_; }
 
   /// Returns the numbers of an array, as doubles or whole. Throw DataError.
   std::vector<double> reals(const Hdf5Group& group, const Hdf5Array& array) const;
@@ -54,6 +56,7 @@ class Hdf5File {
 
   std::filesystem::path path_;
   std::uint64_t file_bytes_;
+  std::string mark_;
   std::vector<Hdf5Group> groups_;
 };
 

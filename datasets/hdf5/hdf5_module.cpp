@@ -13,6 +13,7 @@ namespace {
 
 constexpr std::size_t kMostGroups = 1'000'000;
 constexpr int kMostDimensions = 4;
+constexpr std::size_t kLongestMark = 65'536;
 constexpr hid_t kWhole = 0;  // H5S_ALL, which is a cast of C
 
 /// Finds "No space left on device" in an error of the library.
@@ -197,9 +198,27 @@ std::vector<std::string> names_in(hid_t file) {
   return names;
 }
 
+/// The attribute of a file that says what made it.
+constexpr const char* kMark = "mosbench_mark";
+
+std::string mark_in(hid_t file) {
+  if (H5Aexists(file, kMark) <= 0) return "";
+  const Handle mark(H5Aopen(file, kMark, H5P_DEFAULT), H5Aclose, "open its mark");
+  const Handle type(H5Aget_type(mark), H5Tclose, "tell a type");
+  const Handle space(H5Aget_space(mark), H5Sclose, "tell a shape");
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) > 0 ||
+      H5Tget_size(type) > kLongestMark || H5Sget_simple_extent_npoints(space) != 1) {
+    throw Hdf5Error(std::string("its attribute ") + kMark + " is no text of fixed length");
+  }
+  std::string text(H5Tget_size(type), '\0');
+  if (H5Aread(mark, type, text.data()) < 0) throw Hdf5Error("libhdf5 cannot read its mark");
+  return text.substr(0, text.find('\0'));
+}
+
 std::string list(const std::string& path, std::span<const std::string_view> wanted,
-                 std::vector<Hdf5Group>& groups) try {
+                 std::vector<Hdf5Group>& groups, std::string& mark) try {
   const Handle file = open_to_read(path);
+  mark = mark_in(file);
   for (const std::string& name : names_in(file)) {
     if (!holds(file, name)) throw Hdf5Error(name + " is a link to another place");
     const Handle group = open_group(file, name);
@@ -295,6 +314,19 @@ class LibraryOutput final : public Hdf5Output {
     if (!is_written || !dataset.close_now()) {
       throw Hdf5Error("libhdf5 cannot write " + group_name + "/" + array.name);
     }
+    return "";
+  } catch (const std::exception& error) {
+    return give_up(error.what());
+  }
+
+  std::string add_mark(const std::string& text) override try {
+    be_quiet();
+    const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "make a type");
+    H5Tset_size(type, text.size());
+    const Handle space(H5Screate(H5S_SCALAR), H5Sclose, "make a shape");
+    const Handle mark(H5Acreate2(file_, kMark, type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                      "make its mark");
+    if (H5Awrite(mark, type, text.data()) < 0) throw Hdf5Error("libhdf5 cannot write its mark");
     return "";
   } catch (const std::exception& error) {
     return give_up(error.what());

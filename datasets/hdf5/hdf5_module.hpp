@@ -40,15 +40,18 @@ class Hdf5Output {
   /// Adds an array; makes the group where it is missing.
   virtual std::string add(const std::string& group, const Hdf5Array& array,
                           std::string_view bytes) = 0;
+  /// Adds a text about the whole file.
+  virtual std::string add_mark(const std::string& text) = 0;
   virtual std::string close() = 0;
 };
 
 /// What the module mosbench_hdf5 can do, which is the only one linked with libhdf5. Every function
 /// returns an empty text, or why it failed.
 struct Hdf5Functions {
-  /// Lists the groups of a file with those of their arrays that have one of the names.
+  /// Lists the groups of a file with those of their arrays that have one of the names, and its
+  /// mark.
   std::string (*list)(const std::string& file, std::span<const std::string_view> names,
-                      std::vector<Hdf5Group>& groups);
+                      std::vector<Hdf5Group>& groups, std::string& mark);
   /// Reads an array as `list` found it, in little-endian numbers.
   std::string (*read)(const std::string& file, const std::string& group, const Hdf5Array& array,
                       std::string& bytes);

@@ -45,6 +45,7 @@ class SceneFlowSequence : public Sequence {
     recording.name = SequenceName(std::move(name), file);
     recording.files = {file};
     recording.reading.scan_files = file.filename().string();
+    if (!file_.mark().empty()) recording.mark = parse_mark(file_.mark(), file);
     list_scans();
     take_poses(asked);
     state_truth(asked);

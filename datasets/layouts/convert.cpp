@@ -149,8 +149,9 @@ std::set<fs::path> expected_files(const Dataset& dataset, const LayoutWriter& wr
                                   const std::vector<Target>& targets) {
   std::set<fs::path> files = {kSimulatedMarker};
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    for (const auto name : {kSimulatedMarker, kDisturbedMarker}) {
-      files.insert(mark_folder_of(writer, targets[i].folder) / name);
+    const auto mark_folder = mark_folder_of(writer, targets[i].folder);
+    if (mark_folder) {
+      files.insert({*mark_folder / kSimulatedMarker, *mark_folder / kDisturbedMarker});
     }
     files.insert({targets[i].pose_file, pose_origin_file(targets[i].pose_file)});
     for (const fs::path& file : writer.files(*dataset.sequences[i])) {
@@ -178,10 +179,10 @@ void write_marks(const LayoutWriter& writer, const std::vector<Target>& targets,
                  const ConvertOptions& options) {
   bool all_simulated = true;
   for (const Target& target : targets) {
-    all_simulated = all_simulated && target.mark.simulated;
-    if (!target.mark.is_set()) continue;
-    const fs::path folder = options.out / mark_folder_of(writer, target.folder);
-    write_file_atomic(folder / marker_name(target.mark), format_mark(target.mark));
+    const auto folder = mark_folder_of(writer, target.folder);
+    all_simulated = all_simulated && target.mark.simulated && folder;
+    if (!target.mark.is_set() || !folder) continue;
+    write_file_atomic(options.out / *folder / marker_name(target.mark), format_mark(target.mark));
   }
   if (all_simulated) {
     write_file_atomic(options.out / kSimulatedMarker, format_mark(targets.back().mark));
@@ -300,7 +301,8 @@ std::vector<std::string> convert(
       if (options.before_sequence) options.before_sequence(i);
       const auto files = writer.open(options.out / targets[i].folder, targets[i].writing);
       convert_sequence(sequence, *files, lost, advance);
-      write_pose_origin(pose_file, pose_origin_of(sequence.reading().poses));
+      write_pose_origin(pose_file, pose_origin_of(sequence.reading().poses),
+                        sequence.recording().doubts);
     }
     unfinished.finish();
   } catch (...) {

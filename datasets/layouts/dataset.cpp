@@ -15,6 +15,7 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
+#include "datasets/sequence/pose_mark.hpp"
 #include "datasets/sequence/scan_range.hpp"
 #include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/text/errors.hpp"
@@ -360,6 +361,11 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
     std::unique_ptr<Sequence> sequence = opened(layout, folder, reading);
     check_positions(*sequence, folder);
     sequence->set_mark(mark_of(*sequence, folder, layout, path));
+    if (const auto* poses = reading.pose_file()) {
+      for (std::string& doubt : doubts_of_poses(*poses, sequence->mark())) {
+        sequence->add_doubt(std::move(doubt));
+      }
+    }
     if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
     dataset.sequences.push_back(with_point_times(std::move(sequence), reading));
   }

@@ -63,10 +63,10 @@ struct LayoutWriter {
   void (*write_splits)(const std::filesystem::path& root, const SplitNumbers& splits) = nullptr;
 };
 
-/// Returns the folder that a sequence's mark is written to: its own, or that of its file. `place`
-/// is what LayoutWriter::folder returns.
-std::filesystem::path mark_folder_of(const LayoutWriter& writer,
-                                     const std::filesystem::path& place);
+/// Returns the folder that a sequence's mark is written to; nothing where one file holds all of the
+/// sequence and its mark. `place` is what LayoutWriter::folder returns.
+std::optional<std::filesystem::path> mark_folder_of(const LayoutWriter& writer,
+                                                    const std::filesystem::path& place);
 
 /// The preset and the protocol that a data set is run and scored with unless the user says others.
 /// A row without them does not compile.

@@ -37,10 +37,10 @@ const Layout& layout_of(DatasetKind kind) {
   return **std::ranges::find(layouts(), kind, &Layout::kind);
 }
 
-std::filesystem::path mark_folder_of(const LayoutWriter& writer,
-                                     const std::filesystem::path& place) {
+std::optional<std::filesystem::path> mark_folder_of(const LayoutWriter& writer,
+                                                    const std::filesystem::path& place) {
   const bool is_file = *writer.last_file({}) == '\0';
-  return is_file ? place.parent_path() : place;
+  return is_file ? std::nullopt : std::optional(place);
 }
 
 std::string lost_stamps_text(std::size_t scans, const Layout& layout) {

@@ -41,7 +41,7 @@ bool is_ground_id(std::uint32_t label) {
 /// The file beside the one that it becomes, which libhdf5 writes by its name.
 class PartialHdf5 {
  public:
-  explicit PartialHdf5(fs::path file) : file_(std::move(file)) {
+  PartialHdf5(fs::path file, const std::string& mark) : file_(std::move(file)) {
     const Hdf5Functions& functions = hdf5_functions(file_);
     try {
       fs::create_directories(fs::absolute(file_).parent_path());
@@ -50,6 +50,7 @@ class PartialHdf5 {
       throw not_written(file_, error.code().message());
     }
     check(functions.create(partial_->path(), output_));
+    if (!mark.empty()) check(output_->add_mark(mark));
   }
 
   void add(const std::string& group, std::string_view name, const Hdf5Number& number,
@@ -87,11 +88,14 @@ class PartialHdf5 {
 /// their flow leads: the same frames give the same bytes.
 class SceneFlowWriter : public SequenceWriter {
  public:
-  explicit SceneFlowWriter(fs::path file) : file_(std::move(file)) { hdf5_functions(file_); }
+  SceneFlowWriter(fs::path file, std::string mark)
+      : file_(std::move(file)), mark_(std::move(mark)) {
+    hdf5_functions(file_);
+  }
 
   void write(std::size_t scan_index, const Frame& frame) override {
     const std::lock_guard lock(mutex_);
-    if (!output_) output_.emplace(file_);
+    if (!output_) output_.emplace(file_, mark_);
     waiting_.emplace(scan_index, frame);
     for (auto next = waiting_.find(next_ + 1); next != waiting_.end();
          next = waiting_.find(next_ + 1)) {
@@ -109,7 +113,7 @@ class SceneFlowWriter : public SequenceWriter {
       add(frame, nullptr);
     }
     waiting_.clear();
-    if (!output_) output_.emplace(file_);
+    if (!output_) output_.emplace(file_, mark_);
     output_->put_in_place();
   }
 
@@ -188,6 +192,7 @@ class SceneFlowWriter : public SequenceWriter {
   }
 
   fs::path file_;
+  std::string mark_;                   ///< that stays with the file; may be empty
   std::optional<PartialHdf5> output_;  ///< from the first frame on
   std::mutex mutex_;
   std::map<std::size_t, Frame> waiting_;
@@ -267,8 +272,9 @@ std::uint32_t simulated_scene_flow_label(const SimulatedReturn& seen) {
 
 }  // namespace
 
-std::unique_ptr<SequenceWriter> write_as_scene_flow(const fs::path& file, const WriteOptions&) {
-  return std::make_unique<SceneFlowWriter>(file);
+std::unique_ptr<SequenceWriter> write_as_scene_flow(const fs::path& file,
+                                                    const WriteOptions& options) {
+  return std::make_unique<SceneFlowWriter>(file, options.mark);
 }
 
 const Layout& opensceneflow_layout() {

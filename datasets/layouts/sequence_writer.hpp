@@ -39,7 +39,7 @@ struct WriteOptions {
   /// Of the bag's chunks: none, lz4, of ROS 1 bz2 and of MCAP zstd; of kDb3's messages none, zstd.
   std::string compression = "lz4";
   bool radial_velocities = false;  ///< whether all frames have them
-  std::string mark = {};           ///< see `format_mark`; a bag keeps it inside, too
+  std::string mark = {};           ///< see `format_mark`; bags and .h5 keep it inside
 };
 
 /// Returns whether a label is one of what moves, 251 to 259.

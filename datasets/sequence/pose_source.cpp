@@ -1,11 +1,9 @@
 #include "datasets/sequence/pose_source.hpp"
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 #include <utility>
 
 #include "datasets/disk/files.hpp"
@@ -13,18 +11,12 @@
 #include "datasets/formats/times_file.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/pose_clock.hpp"
+#include "datasets/sequence/pose_mark.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
-
-std::filesystem::path mark_of(std::filesystem::path file) { return file += ".frame"; }
-
-/// With the hash, so that the mark of an overwritten file says nothing about the new one.
-std::string lidars(std::string_view text) {
-  return fmt::format("lidar {:016x}\n", XXH3_64bits(text.data(), text.size()));
-}
 
 PoseTrack track_of(const PoseList& list) {
   std::vector<std::pair<std::int64_t, Pose>> stamped;
@@ -244,7 +236,7 @@ class SensorPoseReader {
     const bool by_calib = !asked_.pose_frame && format == PoseFormat::kKitti;
     const bool of_camera = asked_.pose_frame == PoseFrame::kCamera || by_calib;
     if (!of_camera || is_identity(camera_from_lidar)) return PoseFrame::kLidar;
-    if (by_calib && is_marked_as_lidars(file_)) {
+    if (by_calib && pose_mark(file_)) {
       result_.done.frame_by_mark = true;
       return PoseFrame::kLidar;
     }
@@ -283,23 +275,6 @@ bool are_too_few(std::size_t posed, std::size_t scans) {
   return posed == 0 || (scans >= kMany && (posed <= kFew || posed * kShare < scans));
 }
 
-void mark_as_lidars(const std::filesystem::path& file, std::string_view text) {
-  write_file_atomic(mark_of(file), lidars(text));
-}
-
-bool has_foreign_mark(const std::filesystem::path& file) {
-  static const std::regex kMark("lidar [0-9a-f]{16}\n");
-  const std::filesystem::path mark = mark_of(file);
-  if (!is_there(mark)) return false;
-  const std::string text = read_file(mark);
-  return !text.empty() && !std::regex_match(text, kMark);
-}
-
-bool is_marked_as_lidars(const std::filesystem::path& file) {
-  const std::filesystem::path mark = mark_of(file);
-  return is_there(mark) && read_file(mark) == lidars(read_file(file));
-}
-
 std::string pose_origin_of(const PosesDone& poses) {
   if (!poses.origin.empty()) return poses.origin;  // of poses that were converted before
   std::string origin;
@@ -315,8 +290,11 @@ fs::path pose_origin_file(const fs::path& pose_file) {
   return pose_file.parent_path() / (pose_file.stem().string() + "." + kPoseOriginFile);
 }
 
-void write_pose_origin(const fs::path& pose_file, const std::string& origin) {
-  write_file_atomic(pose_origin_file(pose_file), origin + "\n" + hash_line(pose_file));
+void write_pose_origin(const fs::path& pose_file, const std::string& origin,
+                       const std::vector<std::string>& doubts) {
+  std::string text = origin + "\n" + hash_line(pose_file);
+  for (const std::string& doubt : doubts) text += shown_in_line(doubt) + "\n";
+  write_file_atomic(pose_origin_file(pose_file), text);
 }
 
 void state_pose_origin(const fs::path& pose_file, PosesDone& poses,
@@ -325,8 +303,11 @@ void state_pose_origin(const fs::path& pose_file, PosesDone& poses,
   if (!is_there(file)) return;
   const std::string text = read_file(file);
   const std::string origin = text.substr(0, text.find('\n'));
-  if (text == origin + "\n" + hash_line(pose_file)) {
+  const std::string head = origin + "\n" + hash_line(pose_file);
+  if (text.starts_with(head)) {
     poses.origin = origin;
+    std::string_view rest = std::string_view(text).substr(head.size());
+    while (!rest.empty()) doubts.push_back(shown_in_line(take_line(rest)));
   } else {
     doubts.push_back(fmt::format(
         "{} was not written for {} as it is now: where these poses came from is not known",

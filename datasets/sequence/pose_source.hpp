@@ -18,17 +18,6 @@ namespace mosbench {
 /// Returns whether so few of many scans have poses that these are not meant for them.
 bool are_too_few(std::size_t posed, std::size_t scans);
 
-/// Writes FILE.frame beside a file of poses in KITTI's rows, which have no room to say whose poses
-/// they are: that these are the lidar's, and the XXH3-64 of `text`, the content of FILE. Throws
-/// DataError.
-void mark_as_lidars(const std::filesystem::path& file, std::string_view text);
-
-/// Whether FILE.frame holds anything else, which mark_as_lidars would replace.
-bool has_foreign_mark(const std::filesystem::path& file);
-
-/// Whether FILE.frame says so of what FILE holds now. Throws DataError where a file cannot be read.
-bool is_marked_as_lidars(const std::filesystem::path& file);
-
 /// Scans have no poses at all, which odometry can find. Who knows what the user typed adds the
 /// command.
 class MissingPoses : public DataError {
@@ -70,11 +59,12 @@ std::filesystem::path pose_origin_file(const std::filesystem::path& pose_file);
 /// Returns the first line for poses that came about so.
 std::string pose_origin_of(const PosesDone& poses);
 
-/// Writes both lines beside `pose_file`, which is complete.
-void write_pose_origin(const std::filesystem::path& pose_file, const std::string& origin);
+/// Writes both lines beside `pose_file`, which is complete, and a line for each doubt.
+void write_pose_origin(const std::filesystem::path& pose_file, const std::string& origin,
+                       const std::vector<std::string>& doubts = {});
 
-/// Adds the line beside `pose_file`, if there is one, to what is said of the poses; a remark in its
-/// place where the file is not the one that the line was written for.
+/// Adds the lines beside `pose_file`, if there are any, to what is said of the poses; a doubt in
+/// their place where the file is not the one that they were written for.
 void state_pose_origin(const std::filesystem::path& pose_file, PosesDone& poses,
                        std::vector<std::string>& doubts);
 

@@ -153,6 +153,7 @@ class Sequence {
   const ReadingDone& reading() const { return recording_.reading; }
   const DataMark& mark() const { return recording_.mark; }
   void set_mark(DataMark mark) { recording_.mark = std::move(mark); }
+  void add_doubt(std::string doubt) { recording_.doubts.push_back(std::move(doubt)); }
   /// Returns what made a simulated sequence; nothing for recorded data.
   const std::optional<SimulatedOrigin>& simulated() const { return recording_.mark.simulated; }
 

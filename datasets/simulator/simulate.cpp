@@ -112,10 +112,9 @@ void check_sensor(const Layout& layout, const Scene& scene) {
 constexpr std::size_t kMostScans = 1'000'000;
 
 SimulatedOrigin origin_of(const SimulateOptions& options, const Scene& scene) {
-  const std::string text = format_scene(scene);
   return {.layout = std::string(to_string(options.layout)),
           .scene = scene.name,
-          .scene_fingerprint = fmt::format("{:016x}", XXH3_64bits(text.data(), text.size())),
+          .scene_fingerprint = fingerprint_of(scene),
           .scans = options.scans,
           .seed = options.seed,
           .perturb = options.perturb ? std::optional(to_string(*options.perturb)) : std::nullopt};
@@ -259,6 +258,16 @@ std::unique_ptr<Sequence> simulated_sequence(const SimulateOptions& options, con
   return perturbed(std::move(sequence), *options.perturb);
 }
 
+std::string fingerprint_of(const Scene& scene) {
+  const std::string text = format_scene(scene);
+  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+}
+
+bool simulates_several(DatasetKind kind) {
+  const Layout& layout = layout_of(kind);
+  return layout.simulation && layout.simulation->recordings.size() > 1;
+}
+
 std::vector<std::string> simulated_names(DatasetKind layout, const Scene& scene) {
   std::vector<std::string> names;
   for (const SimulatedRecording& recording : recordings_of(layout, scene)) {
@@ -291,13 +300,15 @@ std::vector<std::string> simulate(
         layout.writer->open(options.out / recording.folder,
                             {.scans = sequence->size(),
                              .camera_from_lidar = tr,
-                             .radial_velocities = sequence->recording().has_radial_velocities});
+                             .radial_velocities = sequence->recording().has_radial_velocities,
+                             .mark = format_simulated_origin(origin)});
     writers.push_back({std::move(sequence), std::move(files)});
   }
   claim_folder(options.out, origin);
   for (const SimulatedRecording& recording : recordings) {
-    const fs::path folder = options.out / mark_folder_of(*layout.writer, recording.folder);
-    write_file_atomic(folder / kSimulatedMarker, format_simulated_origin(origin));
+    const auto folder = mark_folder_of(*layout.writer, recording.folder);
+    if (!folder) continue;
+    write_file_atomic(options.out / *folder / kSimulatedMarker, format_simulated_origin(origin));
   }
   write_file_atomic(options.out / "README.txt", readme(origin, layout));
   write_file_atomic(options.out / "scene.json", format_scene(scene));

@@ -37,6 +37,12 @@ std::vector<std::string> simulate(
     const SimulateOptions& options,
     const std::function<void(std::size_t done, std::size_t total)>& progress = {});
 
+/// Returns a hash of the whole scene.
+std::string fingerprint_of(const Scene& scene);
+
+/// Returns whether a simulation of this layout consists of several sequences.
+bool simulates_several(DatasetKind layout);
+
 /// Returns the names of the sequences that a simulation consists of. Throws UsageError as
 /// `simulate`.
 std::vector<std::string> simulated_names(DatasetKind layout, const Scene& scene);

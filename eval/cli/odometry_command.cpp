@@ -50,13 +50,14 @@ Answer odometry_answer(OdometryFlags flags) {
                                              ? named_odometry(flags.odometry, flags.reading)
                                              : choose_odometry(flags.odometry, flags.reading);
   if (choice) flags.reading.poses = ByOdometry{};
-  const Dataset dataset = open_dataset(flags);
+  Dataset dataset = open_dataset(flags);
   if (choice) choice = with_filter(*std::move(choice), dataset.kind);
+  if (choice) expect_poses(dataset, *choice);
   std::string text;
   nlohmann::ordered_json sequences = nlohmann::ordered_json::array();
   std::size_t doubtful = 0;
   for (const FoundPoses& found : write_poses(dataset, choice, flags.files)) {
-    doubtful += doubtful_scans(found);
+    doubtful += doubtful_poses(found).size();
     text += found_text(found, choice ? choice->kind->title : "refining those given");
     sequences.push_back(found_json(found));
   }

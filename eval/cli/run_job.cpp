@@ -95,7 +95,8 @@ void run_by_snakemake(const StudyPlan& plan, const CostModel& costs, const JobFl
   if (engine != 0) tell(fmt::format("Snakemake ended with exit code {}", engine));
 }
 
-Answer run_answer(const Study& study, const StudyPlan& plan, const JobFlags& flags) {
+Answer run_answer(const StudyPlan& plan, const JobFlags& flags) {
+  check_presets(plan);
   const std::size_t pending = work_of(plan, {}).cells.size();
   if (pending > 0 && (flags.profile || pending > kMostWithoutYes)) measure_costs(plan);
   const CostModel costs = read_costs(plan.out);
@@ -111,16 +112,15 @@ Answer run_answer(const Study& study, const StudyPlan& plan, const JobFlags& fla
   } else {
     run_here(plan, flags.threads > 0 ? flags.threads : hardware_threads());
   }
-  const StudyPlan computed = plan_study(study, plan.out);
+  StudyPlan computed = plan;
+  refresh(computed);
   const StudyTable table = gather(computed);
   write_presets(table.choices);
   return table_answer(computed, table, flags);
 }
 
-StudyPlan plan_of(const Study& study, const JobFlags& flags) {
-  return plan_study(study,
-                    flags.out.value_or(std::filesystem::path("results/runs") / flags.file.stem()),
-                    flags.keys);
+std::filesystem::path out_of(const JobFlags& flags) {
+  return flags.out.value_or(std::filesystem::path("results/runs") / flags.file.stem());
 }
 
 }  // namespace
@@ -133,15 +133,16 @@ bool is_job(const std::filesystem::path& input) {
 Answer run_job(const JobFlags& flags) {
   check_output(flags.output);
   const Study study = read_study(flags.file);
-  const StudyPlan plan = plan_of(study, flags);
+  const StudyPlan plan = plan_study(study, out_of(flags), flags.keys);
   if (flags.dry_run) return plan_answer(plan);
-  return flags.keys.empty() ? run_answer(study, plan, flags) : cell_answer(plan, flags);
+  return flags.keys.empty() ? run_answer(plan, flags) : cell_answer(plan, flags);
 }
 
 Answer rank_job(const JobFlags& flags) {
   check_output(flags.output);
   const Study study = read_study(flags.file);
-  const StudyPlan plan = plan_of(study, flags);
+  const std::vector<ProgramFile> known = recorded_program_files(study, out_of(flags));
+  const StudyPlan plan = plan_study(study, out_of(flags), flags.keys, &known);
   return table_answer(plan, gather(plan), flags);
 }
 

@@ -8,8 +8,9 @@
 
 #include "datasets/disk/claim.hpp"
 #include "datasets/disk/files.hpp"
+#include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/sequence/fingerprint.hpp"
-#include "datasets/sequence/pose_source.hpp"
+#include "datasets/sequence/pose_mark.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/result/machine.hpp"
@@ -23,13 +24,9 @@ namespace mosbench {
 namespace {
 
 /// What two records must share for their poses to be the same.
-nlohmann::ordered_json record_identity(const Sequence& sequence,
-                                       const std::optional<OdometryChoice>& choice) {
-  ReadingDone reading = sequence.reading();
-  if (choice) reading.poses = statement_of(*choice);
-  if (choice && choice->says_deskew) reading.deskew = choice->deskew;
+nlohmann::ordered_json record_identity(const Sequence& sequence) {
   return {{"sequence", sequence.name()},
-          {"reading", to_json(members_of(reading))},
+          {"reading", to_json(members_of(sequence.reading()))},
           {"file_stamp", file_stamp(sequence)},
           {"code", code_json()}};
 }
@@ -44,10 +41,23 @@ bool lies_in_a_folder(const std::filesystem::path& file) {
 }
 
 /// KITTI's rows do not say that they are the lidar's, which a calib.txt would take for the
-/// camera's.
-void write_pose_file(const std::filesystem::path& file, const std::string& rows, bool as_tum) {
-  if (!as_tum && lies_in_a_folder(file)) mark_as_lidars(file, rows);
-  write_output(file, rows);
+/// camera's; those of TUM are marked where there is more to say.
+void write_pose_file(const FoundPoses& found, bool as_tum) {
+  const std::string rows = pose_rows(found, as_tum);
+  const PoseMark mark = mark_of_poses(found.sequence);
+  if ((!as_tum || mark.is_set()) && lies_in_a_folder(found.file)) {
+    mark_poses(found.file, rows, mark);
+  }
+  write_output(found.file, rows);
+}
+
+/// Gives a sequence the poses of a record, or those that were found now.
+void set_poses(Sequence& sequence, const FoundPoses& found) {
+  auto* posed = dynamic_cast<PosedSequence*>(&sequence);
+  if (posed == nullptr) return;  // it has them
+  posed->set_poses(poses_of(found));
+  std::string doubt = doubt_about(doubtful_poses(found), found.scans.size());
+  if (!doubt.empty()) sequence.add_doubt(std::move(doubt));
 }
 
 /// KITTI's rows belong to all scans, the first to the first.
@@ -61,7 +71,7 @@ void refuse_part(const Sequence& sequence) {
 
 /// What is to be written of one sequence.
 struct PoseTask {
-  const Sequence& sequence;
+  Sequence& sequence;
   std::filesystem::path file;
   std::filesystem::path record = {};  ///< beside each of several; none for a single one
   nlohmann::ordered_json identity = {};
@@ -69,14 +79,13 @@ struct PoseTask {
   bool is_written = false;  ///< the poses of these scans lie there
 };
 
-PoseTask task_of(const Sequence& sequence, const std::optional<OdometryChoice>& choice,
-                 const PoseFiles& files, bool single) {
+PoseTask task_of(Sequence& sequence, const PoseFiles& files, bool single) {
   if (single) return {.sequence = sequence, .file = files.out};
   const std::string stem = (files.out / sequence.name()).string();
   return {.sequence = sequence,
           .file = stem + (files.as_tum ? ".tum" : ".txt"),
           .record = stem + ".json",
-          .identity = record_identity(sequence, choice)};
+          .identity = record_identity(sequence)};
 }
 
 [[noreturn]] void refuse_record(const PoseTask& task, const std::string& why) {
@@ -110,7 +119,7 @@ void check_task(PoseTask& task, bool as_tum) {
       read_file(task.file) == pose_rows({task.sequence, task.file, *task.recorded}, as_tum);
   if (task.is_written || !lies_in_a_folder(task.file)) return;
   refuse_to_replace(task.file);
-  if (!as_tum && has_foreign_mark(task.file)) refuse_to_replace(task.file.string() + ".frame");
+  if (has_foreign_mark(task.file)) refuse_to_replace(task.file.string() + ".frame");
 }
 
 /// The record is written before the poses: they never lie there without it.
@@ -128,14 +137,14 @@ FoundPoses find_or_keep(PoseTask task, const std::optional<OdometryChoice>& choi
       commit_file(task.record, json_text({{"identity", task.identity}, {"scans", found.scans}}));
     }
   }
-  if (!task.is_written) write_pose_file(task.file, pose_rows(found, files.as_tum), files.as_tum);
+  set_poses(task.sequence, found);
+  if (!task.is_written) write_pose_file(found, files.as_tum);
   return found;
 }
 
 }  // namespace
 
-std::vector<FoundPoses> write_poses(const Dataset& dataset,
-                                    const std::optional<OdometryChoice>& choice,
+std::vector<FoundPoses> write_poses(Dataset& dataset, const std::optional<OdometryChoice>& choice,
                                     const PoseFiles& files) {
   for (const auto& sequence : dataset.sequences) {
     files.as_tum ? check_stamps_of_tum(*sequence) : refuse_part(*sequence);
@@ -149,7 +158,7 @@ std::vector<FoundPoses> write_poses(const Dataset& dataset,
       single ? std::nullopt : std::make_optional<FolderLock>(files.out);
   std::vector<PoseTask> tasks;
   for (const auto& sequence : dataset.sequences) {
-    tasks.push_back(task_of(*sequence, choice, files, single));
+    tasks.push_back(task_of(*sequence, files, single));
     if (!files.overwrite) check_task(tasks.back(), files.as_tum);
   }
   std::vector<FoundPoses> found;

@@ -17,11 +17,11 @@ struct PoseFiles {
   unsigned threads = 1;
 };
 
-/// Finds and writes the poses of every sequence of a data set that was opened without poses; writes
-/// those that it has without a choice. Of several, those that an earlier call finished are kept.
-/// What is in the way is found before any work. Throws UsageError and DataError.
-std::vector<FoundPoses> write_poses(const Dataset& dataset,
-                                    const std::optional<OdometryChoice>& choice,
+/// Finds and writes the poses of every sequence of a data set that was opened without poses, and
+/// whose sequences `expect_poses` wrapped; writes those that it has without a choice. Of several,
+/// those that an earlier call finished are kept. What is in the way is found before any work. The
+/// sequences have these poses then. Throws UsageError and DataError.
+std::vector<FoundPoses> write_poses(Dataset& dataset, const std::optional<OdometryChoice>& choice,
                                     const PoseFiles& files);
 
 }  // namespace mosbench

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
+#include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/formats/times_file.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
@@ -107,6 +109,21 @@ void set_poses(Sequence& sequence, const OdometryChoice& choice,
                const std::vector<ScanPose>& scans) {
   auto& posed = dynamic_cast<PosedSequence&>(sequence);
   posed.set_poses(poses_of(scans), odometry_remark(sequence, choice, scans));
+  std::string doubt = doubt_about(doubtful_poses(sequence, scans), scans.size());
+  if (!doubt.empty()) posed.add_doubt(std::move(doubt));
+}
+
+std::vector<DoubtfulPose> doubtful_poses(const Sequence& sequence,
+                                         const std::vector<ScanPose>& scans) {
+  std::vector<DoubtfulPose> doubtful;
+  for (std::size_t k = 0; k < scans.size(); ++k) {
+    if (scans[k].doubtful()) doubtful.push_back({sequence.stem(k), scans[k].doubt});
+  }
+  return doubtful;
+}
+
+PoseMark mark_of_poses(const Sequence& sequence) {
+  return {mark_as_read(sequence).simulated, doubts_of(sequence)};
 }
 
 std::vector<Pose> poses_of(const std::vector<ScanPose>& scans) {
@@ -193,7 +210,7 @@ std::string tum_rows(const std::vector<std::int64_t>& stamps_ns, const std::vect
   return rows;
 }
 
-std::string pose_rows(const FoundPoses& found, bool as_tum) {
+std::vector<Pose> poses_of(const FoundPoses& found) {
   std::vector<Pose> poses;
   for (const auto& scan : found.scans) {
     Pose& pose = poses.emplace_back(Pose::Identity());
@@ -202,6 +219,11 @@ std::string pose_rows(const FoundPoses& found, bool as_tum) {
           scan.at("map_from_sensor").at(i / 4).at(i % 4).get<double>();
     }
   }
+  return poses;
+}
+
+std::string pose_rows(const FoundPoses& found, bool as_tum) {
+  const std::vector<Pose> poses = poses_of(found);
   if (!as_tum) return format_poses(poses);
   std::vector<std::int64_t> stamps_ns;
   for (std::size_t k = 0; k < poses.size(); ++k) {
@@ -210,31 +232,34 @@ std::string pose_rows(const FoundPoses& found, bool as_tum) {
   return tum_rows(stamps_ns, poses);
 }
 
-std::size_t doubtful_scans(const FoundPoses& found) {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      found.scans, [](const auto& scan) { return !scan.at("doubt").is_null(); }));
+std::vector<DoubtfulPose> doubtful_poses(const FoundPoses& found) {
+  std::vector<DoubtfulPose> doubtful;
+  for (const auto& scan : found.scans) {
+    if (scan.at("doubt").is_null()) continue;
+    doubtful.push_back({scan.at("stem").get<std::string>(), scan.at("doubt").get<std::string>()});
+  }
+  return doubtful;
 }
 
 std::string found_text(const FoundPoses& found, std::string_view odometry) {
   constexpr std::size_t kListed = 10;
-  const std::size_t doubtful = doubtful_scans(found);
-  std::string text =
-      fmt::format("{}: {} by {} in {}, {} doubtful\n", found.sequence.name(),
-                  counted(found.scans.size(), "pose"), odometry, found.file.string(), doubtful);
-  std::size_t listed = 0;
-  for (const auto& scan : found.scans) {
-    if (scan.at("doubt").is_null() || listed++ >= kListed) continue;
-    text += fmt::format("  scan {}: {}\n", scan.at("stem").get<std::string>(),
-                        scan.at("doubt").get<std::string>());
+  const std::vector<DoubtfulPose> doubtful = doubtful_poses(found);
+  std::string text = fmt::format("{}: {} by {} in {}, {} doubtful\n", found.sequence.name(),
+                                 counted(found.scans.size(), "pose"), odometry, found.file.string(),
+                                 doubtful.size());
+  for (const auto& [stem, doubt] : std::span(doubtful).first(std::min(kListed, doubtful.size()))) {
+    text += fmt::format("  scan {}: {}\n", stem, doubt);
   }
-  if (doubtful > kListed) text += fmt::format("  and {} more\n", doubtful - kListed);
+  if (doubtful.size() > kListed) {
+    text += fmt::format("  and {} more\n", doubtful.size() - kListed);
+  }
   return text;
 }
 
 nlohmann::ordered_json found_json(const FoundPoses& found) {
   return {{"sequence", found.sequence.name()},
           {"file", found.file.string()},
-          {"doubtful", doubtful_scans(found)},
+          {"doubtful", doubtful_poses(found).size()},
           {"scans", found.scans}};
 }
 

@@ -14,6 +14,7 @@
 #include "datasets/sequence/kept_scans.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "eval/job/method_choice.hpp"
+#include "eval/result/result.hpp"
 
 namespace mosbench {
 
@@ -33,7 +34,15 @@ std::vector<ScanPose> estimate_poses(
 std::vector<ScanPose> find_poses(const Sequence& sequence, const OdometryChoice& choice,
                                  unsigned threads);
 
-/// Gives a sequence that `expect_poses` wrapped the poses that were found.
+/// Returns those that odometry does not trust.
+std::vector<DoubtfulPose> doubtful_poses(const Sequence& sequence,
+                                         const std::vector<ScanPose>& scans);
+
+/// Returns what is to be known of the poses of a sequence once they are a file.
+PoseMark mark_of_poses(const Sequence& sequence);
+
+/// Gives a sequence that `expect_poses` wrapped the poses that were found, and a doubt where some
+/// are doubtful.
 void set_poses(Sequence& sequence, const OdometryChoice& choice,
                const std::vector<ScanPose>& scans);
 
@@ -79,11 +88,11 @@ void check_stamps_of_tum(const Sequence& sequence);
 /// The rows of a TUM file of poses with these stamps, one for each.
 std::string tum_rows(const std::vector<std::int64_t>& stamps_ns, const std::vector<Pose>& poses);
 
-/// The rows of a file of poses, of KITTI or, for scans with stamps, of TUM. Throws a JSON exception
-/// for scans that `scans_json` did not write.
+/// Throw a JSON exception for scans that `scans_json` did not write.
+std::vector<Pose> poses_of(const FoundPoses& found);
+std::vector<DoubtfulPose> doubtful_poses(const FoundPoses& found);
+/// The rows of a file of poses, of KITTI or, for scans with stamps, of TUM.
 std::string pose_rows(const FoundPoses& found, bool as_tum);
-
-std::size_t doubtful_scans(const FoundPoses& found);
 
 /// How many poses there are and why the first of the doubtful ones are doubtful.
 std::string found_text(const FoundPoses& found, std::string_view odometry);

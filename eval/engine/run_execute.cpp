@@ -12,7 +12,7 @@
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/doctor/pose_fit.hpp"
 #include "datasets/formats/pose_file.hpp"
-#include "datasets/sequence/pose_source.hpp"
+#include "datasets/sequence/pose_mark.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/exec/child_process.hpp"
@@ -97,10 +97,7 @@ Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran
     std::string doubt = tuning_doubt(*plan.job.segment.tuned, result);
     if (!doubt.empty()) result.doubts.push_back(std::move(doubt));
   }
-  if (plan.odometry) result.doubtful_poses.emplace();
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    if (found[k].doubtful()) result.doubtful_poses->push_back({sequence.stem(k), found[k].doubt});
-  }
+  if (plan.odometry) result.doubtful_poses = doubtful_poses(sequence, found);
   for (const ScanEntry& scan : sequence.recording().left_out) {
     result.scans_left_out.push_back(scan.stem);
   }
@@ -149,7 +146,7 @@ ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& pl
     found = take_poses(plan, planned.position);
     if (settings.keeps_labels) {
       const std::string rows = format_poses(poses_of(found));
-      mark_as_lidars(partial / "poses.txt", rows);
+      mark_poses(partial / "poses.txt", rows, mark_of_poses(sequence));
       write_file_atomic(partial / "poses.txt", rows);
     }
   }

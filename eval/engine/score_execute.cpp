@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 #include <mutex>
 #include <string_view>
@@ -172,13 +173,15 @@ void add_doubts(const Sequence& sequence, const std::vector<std::size_t>& scans,
 std::string changed_since(const Result& run, const std::vector<ScanRow>& rows) {
   std::map<std::string_view, std::optional<LabelHash>> written;
   for (const ScanRow& row : run.scans) written.emplace(row.stem, row.label_hash);
-  const auto others = std::ranges::count_if(rows, [&](const ScanRow& row) {
+  std::vector<std::string_view> changed;
+  for (const ScanRow& row : rows) {
     const auto before = written.find(row.stem);
-    return before != written.end() && before->second && before->second != row.label_hash;
-  });
-  if (others == 0) return "";
-  return fmt::format("LABELS CHANGED after the run: {} of {} are not those that it wrote", others,
-                     counted(rows.size(), "label file"));
+    const bool is_known = before != written.end() && before->second;
+    if (is_known && before->second != row.label_hash) changed.push_back(row.stem);
+  }
+  if (changed.empty()) return "";
+  return fmt::format("LABELS CHANGED after the run: {} of {} are not what it wrote, first {}.label",
+                     changed.size(), counted(rows.size(), "label file"), changed.front());
 }
 
 /// Adds what is known of the labels where a run wrote them.
@@ -186,7 +189,7 @@ void add_doubts_of_run(const Sequence& sequence, const ScoreTask& task, Sequence
   OpenedPredictions& opened = *scores.opened;
   scores.run = run_that_wrote(opened.path);
   if (!scores.run) return;
-  opened.doubts = doubts_of_labels(*scores.run, sequence);
+  std::ranges::move(doubts_of_labels(*scores.run, sequence), std::back_inserter(opened.doubts));
   const bool as_written = opened.format == PredictionFormat::kLabel && !task.options.id_map;
   std::string changed = as_written ? changed_since(*scores.run, scores.by_rule.front()) : "";
   if (!changed.empty()) opened.doubts.push_back(std::move(changed));

@@ -20,6 +20,7 @@
 #include "eval/engine/pose_finding.hpp"
 #include "eval/engine/run_execute.hpp"
 #include "eval/engine/sequence_runner.hpp"
+#include "eval/job/study_drives.hpp"
 #include "eval/protocols/metrics.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/tell.hpp"
@@ -154,7 +155,7 @@ ordered_json measured_cost(const StudyPlan& study, const StudyCell& cell) {
 
 /// Looks again at what lies where a cell's result belongs. A file that is damaged, or of another
 /// cell, is none.
-void look_up(PlannedCell& planned, const fs::path& out) {
+void look_up(PlannedCell& planned, const fs::path& out, bool may_have_changed = false) {
   const std::string& key = planned.cell.key;
   const fs::path result = cell_folder(out, key) / "result.json";
   const fs::path failure = cell_folder(out, key) / "failure.json";
@@ -164,7 +165,7 @@ void look_up(PlannedCell& planned, const fs::path& out) {
   try {
     const Result found = is_there(result) ? read_result(result) : Result{};
     // The same content may have been run from other files, which have changed since.
-    if (found.key == key && !changed_program_file(found)) {
+    if (found.key == key && (may_have_changed || !changed_program_file(found))) {
       planned.numbers = numbers_of(found);
       const bool is_own = found.from.version == kMosbenchVersion;
       planned.state = is_own ? CellState::kDone : CellState::kOtherVersion;
@@ -183,13 +184,20 @@ void look_up(PlannedCell& planned, const fs::path& out) {
   }
 }
 
+void look_up_all(StudyPlan& plan, bool may_have_changed) {
+  ThreadPool pool(hardware_threads());
+  pool.for_ranges(plan.cells.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t i = begin; i < end; ++i) look_up(plan.cells[i], plan.out, may_have_changed);
+  });
+}
+
 }  // namespace
 
 CellNumbers numbers_of(const Result& result) {
   CellNumbers numbers;
   numbers.version = result.from.version;
   numbers.simulated = result.is_simulated();
-  numbers.simulation = simulation_of(result);
+  numbers.simulation = drive_of(result.from.simulated);
   numbers.fingerprint = result.from.fingerprint_without_poses;
   numbers.doubts = doubts_of(result);
   numbers.counts = counts_of(result);
@@ -209,10 +217,10 @@ CellNumbers numbers_of(const Result& result) {
   return numbers;
 }
 
-StudyPlan plan_study(const Study& study, const fs::path& out,
-                     const std::vector<std::string>& only) {
+StudyPlan plan_study(const Study& study, const fs::path& out, const std::vector<std::string>& only,
+                     const std::vector<ProgramFile>* known) {
   StudyPlan plan{&study, out, {}, std::nullopt};
-  std::vector<StudyCell> cells = cells_of(study);
+  std::vector<StudyCell> cells = cells_of(study, known);
   plan.rule = shared_rule(study, cells);
   for (StudyCell& cell : cells) {
     const bool wanted = only.empty() || std::ranges::find(only, cell.key) != only.end();
@@ -220,11 +228,38 @@ StudyPlan plan_study(const Study& study, const fs::path& out,
   }
   if (!is_there(out / "cells")) return plan;
   note_old_records(out);
-  ThreadPool pool(hardware_threads());
-  pool.for_ranges(plan.cells.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
-    for (std::size_t i = begin; i < end; ++i) look_up(plan.cells[i], out);
-  });
+  look_up_all(plan, false);
   return plan;
+}
+
+std::vector<ProgramFile> recorded_program_files(const Study& study, const fs::path& out) {
+  std::vector<ProgramFile> files;
+  const auto is_program = [](const StudyMethod& method) { return method.segment.is_program(); };
+  if (std::ranges::none_of(study.methods, is_program)) return files;
+  std::error_code ignored;
+  for (const auto& cell : fs::directory_iterator(out / "cells", ignored)) {
+    try {
+      const Result result = read_result(cell.path() / "result.json");
+      files.insert(files.end(), result.from.program_files.begin(), result.from.program_files.end());
+    } catch (const DataError&) {  // a cell that failed
+    }
+  }
+  return files;
+}
+
+void refresh(StudyPlan& plan) {
+  look_up_all(plan, true);
+  for (const StudyMethod& method : plan.study->methods) {
+    const std::string now = hash_of_program(files_of_program(*method.segment.method));
+    const auto is_stale = [&](const PlannedCell& planned) {
+      return planned.cell.method == &method && planned.cell.program != now;
+    };
+    if (std::ranges::none_of(plan.cells, is_stale)) continue;
+    tell(
+        fmt::format("{}: a file that its command names has changed during the run, expected files "
+                    "that stay as they are: the next run computes its cells again",
+                    method.name));
+  }
 }
 
 std::string_view to_string(CellState state) {

@@ -36,7 +36,7 @@ struct BadScan {
 struct CellNumbers {
   std::string version;  ///< of mosbench
   bool simulated = false;
-  std::string simulation, fingerprint;  ///< of the sequence, without poses; see `simulation_of`
+  std::string simulation, fingerprint;  ///< of the sequence, without poses; see `drive_of`
   std::vector<std::string> doubts{};
   SequenceCounts counts;  ///< of the scans that count
   ScanGaps gaps;          ///< between them
@@ -70,8 +70,18 @@ std::string default_title(const StudyPlan& plan);
 /// Lists the cells and what is known of them. Data on disk are opened, simulated ones are not made.
 /// With `only` given, of these keys alone. Throws UsageError, also where cells would be scored by
 /// different rules, and DataError; a sequence that cannot be opened is a cell that will fail.
+/// `known` as of `files_of_program`.
 StudyPlan plan_study(const Study& study, const std::filesystem::path& out,
-                     const std::vector<std::string>& only = {});
+                     const std::vector<std::string>& only = {},
+                     const std::vector<ProgramFile>* known = nullptr);
+
+/// Returns the files that commands of programs named when the results there were made.
+std::vector<ProgramFile> recorded_program_files(const Study& study,
+                                                const std::filesystem::path& out);
+
+/// Looks again at what lies there for the cells as they were planned, also where a program has
+/// changed a file of its command since, by which they would have other keys now: tells of that.
+void refresh(StudyPlan& plan);
 
 /// Returns the folder of a cell: its result.json, or its failure.json.
 std::filesystem::path cell_folder(const std::filesystem::path& out, const std::string& key);

@@ -212,7 +212,8 @@ bool names_file(std::string_view word) {
 
 }  // namespace
 
-std::vector<ProgramFile> files_of_program(const MethodKind& method) {
+std::vector<ProgramFile> files_of_program(const MethodKind& method,
+                                          const std::vector<ProgramFile>* known) {
   std::vector<ProgramFile> files;
   if (method.name != kExecKind) return files;
   std::istringstream command{std::string(method.title.substr(std::string_view("exec:").size()))};
@@ -229,6 +230,12 @@ std::vector<ProgramFile> files_of_program(const MethodKind& method) {
     if (in_comment) word = bare(word);
     fs::path file = is_first ? found_by_path(word) : fs::path(word);
     std::error_code ignored;
+    if (known != nullptr && !file.empty() && !fs::exists(file, ignored)) {
+      const auto gone =
+          std::ranges::find(*known, fs::absolute(file).lexically_normal(), &ProgramFile::path);
+      if (gone != known->end()) files.push_back(*gone);
+      continue;
+    }
     if (in_comment && names_file(word) && !fs::exists(file, ignored)) {
       throw UsageError(fmt::format(
           "--method {}: names {} behind its #, which does not exist, expected files that do",

@@ -98,7 +98,9 @@ std::string key_of(const nlohmann::ordered_json& identity);
 
 /// Returns the files that the command of a program of the user names, also behind a # that ends it
 /// for the shell, and the command itself where it is found by PATH and is no part of the system.
-std::vector<ProgramFile> files_of_program(const MethodKind& method);
+/// Those that are gone are as they were `known`; without it, throws UsageError for one behind a #.
+std::vector<ProgramFile> files_of_program(const MethodKind& method,
+                                          const std::vector<ProgramFile>* known = nullptr);
 /// Returns a hash of them; empty where there are none.
 std::string hash_of_program(const std::vector<ProgramFile>& files);
 

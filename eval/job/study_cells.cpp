@@ -41,13 +41,14 @@ std::string content_of(const Sequence& sequence) {
 }
 
 /// What a cell has to say of a sequence on disk. One that cannot be opened says why.
-ordered_json sequence_json(const Data& data, const std::string& name) {
+ordered_json sequence_json(const Data& data, const std::string& name, std::string& drive) {
   try {
     Reading reading = data.reading;
     const bool refines = std::exchange(reading.refine_poses, false);  // which reads all scans
     const Dataset dataset = open_dataset(data.path, {data.kind, {name}, reading});
     if (reading.pose_file() != nullptr) reading.poses = OwnPoses{};
     reading.refine_poses = refines;
+    drive = drive_of(dataset.sequences.front()->simulated());
     return {{"dataset", to_string(dataset.kind)},
             {"content", content_of(*dataset.sequences.front())},
             {"reading", told_json(reading)}};
@@ -60,7 +61,8 @@ struct KnownSequence {
   DatasetKind kind;
   std::string name;
   ordered_json input;  ///< what its key says of it
-  std::string drive;   ///< see StudyCell; empty where nobody asks, or it cannot be read
+  std::string drive;   ///< see StudyCell, as `scans`
+  std::set<std::uint64_t> scans = {};
 };
 
 /// Throws UsageError for a sequence that the simulation does not write.
@@ -69,9 +71,10 @@ std::vector<KnownSequence> simulated_sequences(const StudyData& data) {
   const std::vector<std::string> written =
       simulated_names(simulation.layout, load_scene(simulation.scene));
   const std::vector<std::string>& wanted = data.data.sequences;
-  const ordered_json made = simulation_json(simulation);
-  const ordered_json json = {{"simulated", made}, {"reading", told_json(data.data.reading)}};
-  const std::string drive = simulated_drive(made.at("scene"), simulation.seed);
+  const ordered_json json = {{"simulated", simulation_json(simulation)},
+                             {"reading", told_json(data.data.reading)}};
+  const std::string drive =
+      simulated_drive(fingerprint_of(load_scene(simulation.scene)), simulation.seed);
   std::vector<KnownSequence> sequences;
   for (const std::string& name : wanted.empty() ? written : wanted) {
     if (std::ranges::find(written, name) == written.end()) {
@@ -90,7 +93,8 @@ std::vector<KnownSequence> sequences_of(const StudyData& data) {
   const OpenOptions options{data.data.kind, data.data.sequences, data.data.reading};
   try {
     for (const SequenceFolder& folder : find_sequences(data.data.path, options, kind)) {
-      sequences.push_back({*kind, folder.name, sequence_json(data.data, folder.name), ""});
+      KnownSequence& sequence = sequences.emplace_back(KnownSequence{*kind, folder.name, {}, ""});
+      sequence.input = sequence_json(data.data, folder.name, sequence.drive);
     }
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", data.name, error.what()));
@@ -101,9 +105,9 @@ std::vector<KnownSequence> sequences_of(const StudyData& data) {
 /// Lists the cells of one method on one sequence after the other.
 class CellLister {
  public:
-  explicit CellLister(const Study& study) : study_(study) {
+  CellLister(const Study& study, const std::vector<ProgramFile>* known) : study_(study) {
     for (const StudyMethod& method : study.methods) {
-      program_of_[&method] = hash_of_program(files_of_program(*method.segment.method));
+      program_of_[&method] = hash_of_program(files_of_program(*method.segment.method, known));
     }
   }
 
@@ -113,7 +117,9 @@ class CellLister {
                       .kind = sequence.kind,
                       .sequence = sequence.name,
                       .drive = sequence.drive,
+                      .scans = sequence.scans,
                       .method = &method,
+                      .program = program_of_.at(&method),
                       .odometry = odometry ? std::string(odometry->kind->name) : ""};
     cell.job = {
         .data = data.data, .odometry = odometry, .segment = method.segment, .rule = study_.rule};
@@ -152,7 +158,7 @@ class CellLister {
   }
 
   void identify(const StudyCell& cell, const ordered_json& input) {
-    identity_ = identity_of(cell.job, cell.kind, input, program_of_.at(cell.method));
+    identity_ = identity_of(cell.job, cell.kind, input, cell.program);
   }
 
   static std::string cost_key(ordered_json identity) {
@@ -285,7 +291,11 @@ std::string StudyCell::label() const {
 
 std::string StudyCell::sequence_label() const { return fmt::format("{} {}", data->name, sequence); }
 
-std::string StudyCell::group_label() const { return fmt::format("{} {}", data->group, sequence); }
+std::string StudyCell::group_label() const {
+  if (drive.empty()) return fmt::format("{} {}", data->group, sequence);
+  return fmt::format("{} {} {}", scene_of(drive), to_string(kind),
+                     simulates_several(kind) ? sequence : "");
+}
 
 std::string StudyCell::title() const {
   std::string text = fmt::format("{}, {}", sequence_label(), method->name);
@@ -298,7 +308,8 @@ std::string StudyCell::title() const {
 bool names_sequence(const std::vector<std::string>& names, const StudyCell& cell) {
   return std::ranges::any_of(names, [&](const std::string& name) {
     return name == cell.data->name || name == cell.data->group || name == cell.sequence ||
-           name == cell.sequence_label() || name == cell.group_label();
+           name == cell.sequence_label() ||
+           name == fmt::format("{} {}", cell.data->group, cell.sequence);
   });
 }
 
@@ -312,13 +323,13 @@ std::vector<SettingChange> changes_of(const Segment& segment, const StudyAxis& a
   return changes;
 }
 
-std::vector<StudyCell> cells_of(const Study& study) {
-  CellLister lister(study);
+std::vector<StudyCell> cells_of(const Study& study, const std::vector<ProgramFile>* known) {
+  CellLister lister(study, known);
   for (const StudyData& data : study.data) {
     for (KnownSequence& sequence : sequences_of(data)) {
       const bool is_read = !sequence.input.contains("unreadable");
-      if (study.tuning && sequence.drive.empty() && is_read) {
-        sequence.drive = drive_of(data.data, sequence.name);
+      if (study.tuning && !data.data.simulation && is_read) {
+        sequence.scans = scan_hashes(data.data, sequence.name);
       }
       for (const StudyMethod& method : study.methods) {
         for (const auto& odometry : study.odometries) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,10 @@ struct StudyCell {
   const StudyData* data = nullptr;
   DatasetKind kind = DatasetKind::kRecording;  ///< of the data
   std::string sequence;
-  std::string drive = {};  ///< tells its scans from others', also under another name or elsewhere
+  std::string drive = {};              ///< see `drive_of`; empty for recorded data
+  std::set<std::uint64_t> scans = {};  ///< see `scan_hashes`; empty where nobody asks
   const StudyMethod* method = nullptr;
+  std::string program = {};         ///< hash of the files that its command names
   std::string odometry;             ///< empty: the poses of the data
   const StudyAxis* axis = nullptr;  ///< null where nothing is changed
   std::string value = {};           ///< of the axis
@@ -28,7 +31,8 @@ struct StudyCell {
   std::string label() const;
   /// Returns "street-1 08".
   std::string sequence_label() const;
-  /// Returns "street 08": seeds of one scene are no more than one sequence to a mean.
+  /// Returns "street 08", of simulated data their scene, layout, and sequence where there are
+  /// several: seeds of one scene are no more than one sequence to a mean.
   std::string group_label() const;
   /// Returns "street 08, hmm-mos, pose_noise_m=0.05, seed 2".
   std::string title() const;
@@ -46,7 +50,9 @@ bool names_sequence(const std::vector<std::string>& names, const StudyCell& cell
 /// not made. Throws UsageError, also for one run under two names and for a tuning whose names are
 /// of no sequence, or that judges where it tunes, and DataError; a sequence that cannot be opened
 /// is a cell that will fail.
-std::vector<StudyCell> cells_of(const Study& study);
+/// `known` as of `files_of_program`.
+std::vector<StudyCell> cells_of(const Study& study,
+                                const std::vector<ProgramFile>* known = nullptr);
 
 /// Returns the rule by which all cells are scored; nothing where the settings of all are refused,
 /// which fail when they are computed. Throws UsageError where cells differ in it: a mean over them

@@ -1,33 +1,47 @@
 #include "eval/job/study_drives.hpp"
 
 #include <fmt/format.h>
+#include <xxhash.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <string_view>
+#include <utility>
 
-#include "datasets/disk/files.hpp"
-#include "datasets/sequence/fingerprint.hpp"
+#include "datasets/layouts/dataset.hpp"
+#include "datasets/simulator/simulate.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {
 
-namespace fs = std::filesystem;
+constexpr std::string_view kSeed = " seed ";
 
-constexpr std::string_view kOfScene = "scene ";
-
-/// Hashes the sizes of all scans, or of a bag, and the bytes of the first: scans of one size may
-/// have other points. Neither names nor poses matter.
-std::string recorded_drive(const Sequence& sequence) {
-  constexpr std::uintmax_t kMostBytes = 1U << 26U;
-  std::vector<fs::path> files;
-  for (const ScanEntry& scan : sequence.recording().scans) {
-    if (scan.file) files.push_back(*scan.file);
+/// Hashes where returns are, in any order: layouts differ in intensities and in returns that miss.
+std::optional<std::uint64_t> hash_of_points(const std::vector<Point>& points) {
+  std::uint64_t sum = 0;
+  for (const Point& point : points) {
+    const std::array<float, 3> at = {point.x, point.y, point.z};
+    const bool is_return = std::isfinite(at[0] + at[1] + at[2]) && at != std::array<float, 3>{};
+    if (is_return) sum += XXH3_64bits(at.data(), sizeof(at));
   }
-  if (files.empty()) files = sequence.files();
-  std::string listing;
-  for (const fs::path& file : files) listing += fmt::format("{} ", size_of(file));
-  const bool is_scan = !files.empty() && size_of(files.front()) <= kMostBytes;
-  return hash_of_text(listing + (is_scan ? hash_of_file(files.front()) : ""));
+  return sum != 0 ? std::optional(sum) : std::nullopt;
+}
+
+/// Up to so many scans; those of as many points in their order.
+std::vector<std::size_t> chosen_scans(const Sequence& sequence) {
+  constexpr std::size_t kRead = 16;
+  std::vector<std::pair<std::uint64_t, std::size_t>> order;
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    const std::uint64_t points = sequence.point_count(k);
+    order.emplace_back(XXH3_64bits(&points, sizeof(points)), k);
+  }
+  std::ranges::sort(order);
+  order.resize(std::min(order.size(), kRead));
+  std::vector<std::size_t> scans;
+  for (const auto& [hash, k] : order) scans.push_back(k);
+  return scans;
 }
 
 /// Whether two parts of a drive share no scan.
@@ -37,28 +51,52 @@ bool are_apart(const StudyCell& first, const StudyCell& second) {
   return (one.to && *one.to <= other.from) || (other.to && *other.to <= one.from);
 }
 
-/// Whether two cells may read the same scans. One simulation may write several sequences, which are
-/// others.
+/// One simulation may write several sequences, which are others.
+bool are_siblings(const StudyCell& first, const StudyCell& second) {
+  return first.kind == second.kind && first.sequence != second.sequence &&
+         simulates_several(first.kind);
+}
+
+/// Whether two cells may read the same scans.
 bool may_share_scans(const StudyCell& first, const StudyCell& second) {
-  if (first.drive.empty() || first.drive != second.drive) return false;
-  const bool are_siblings = first.data == second.data && first.drive.starts_with(kOfScene);
-  return !are_siblings && !are_apart(first, second);
+  const bool same_scan = std::ranges::any_of(
+      first.scans, [&](std::uint64_t scan) { return second.scans.contains(scan); });
+  const bool same_simulation = !first.drive.empty() && first.drive == second.drive;
+  const bool same = same_scan || (same_simulation && !are_siblings(first, second));
+  return same && !are_apart(first, second);
 }
 
 }  // namespace
 
 std::string simulated_drive(const std::string& scene_fingerprint, std::uint64_t seed) {
-  return fmt::format("{}{} seed {}", kOfScene, scene_fingerprint, seed);
+  return fmt::format("scene {}{}{}", scene_fingerprint, kSeed, seed);
 }
 
-std::string drive_of(const Data& data, const std::string& sequence) {
+std::string drive_of(const std::optional<SimulatedOrigin>& origin) {
+  return origin ? simulated_drive(origin->scene_fingerprint, origin->seed) : "";
+}
+
+std::string scene_of(const std::string& drive) { return drive.substr(0, drive.rfind(kSeed)); }
+
+std::set<std::uint64_t> scan_hashes(const Data& data, const std::string& sequence) {
   Reading reading = data.reading;
   reading.scans.reset();
-  reading.refine_poses = false;
+  reading.perturb.reset();
+  reading.refine_poses = reading.hdl64_correction = false;
   const Dataset dataset = open_dataset(data.path, {data.kind, {sequence}, reading});
   const Sequence& opened = *dataset.sequences.front();
-  const auto& origin = opened.simulated();
-  return origin ? simulated_drive(origin->scene_fingerprint, origin->seed) : recorded_drive(opened);
+  std::set<std::uint64_t> hashes;
+  Frame frame;
+  for (const std::size_t k : chosen_scans(opened)) {
+    opened.read(k, frame);
+    if (const auto hash = hash_of_points(frame.points)) hashes.insert(*hash);
+  }
+  return hashes;
+}
+
+bool are_seeds_of_one_scene(const StudyCell& first, const StudyCell& second) {
+  return !first.drive.empty() && first.drive != second.drive &&
+         scene_of(first.drive) == scene_of(second.drive);
 }
 
 void check_drives(const Study& study, const std::vector<StudyCell>& cells) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -13,9 +15,20 @@ namespace mosbench {
 
 /// Returns "scene 5f3a... seed 7": one drive, whatever its layout and length.
 std::string simulated_drive(const std::string& scene_fingerprint, std::uint64_t seed);
+/// Returns the same; empty for recorded data.
+std::string drive_of(const std::optional<SimulatedOrigin>& origin);
 
-/// Returns the same for a sequence on disk, whichever of its scans are read. Throws DataError.
-std::string drive_of(const Data& data, const std::string& sequence);
+/// Returns "scene 5f3a..." of it; empty for recorded data.
+std::string scene_of(const std::string& drive);
+
+/// Returns hashes of the points of up to 16 scans of a sequence on disk. Scans are chosen by how
+/// many points they have, so that a copy in another layout, or with some scans less, gives the same
+/// ones. It cannot know a copy whose points were changed, nor one from the middle of a drive whose
+/// scans have all as many points. Throws DataError.
+std::set<std::uint64_t> scan_hashes(const Data& data, const std::string& sequence);
+
+/// Returns whether two cells are of one scene, with other seeds.
+bool are_seeds_of_one_scene(const StudyCell& first, const StudyCell& second);
 
 /// Throws UsageError for a tuning that judges on scans that it tunes on; other scans of a drive may
 /// be judged.

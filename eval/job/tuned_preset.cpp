@@ -9,6 +9,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
+#include "eval/job/study_drives.hpp"
 #include "eval/result/settings_json.hpp"
 
 namespace mosbench {
@@ -95,7 +96,7 @@ TunedPreset read_tuned_preset(const std::filesystem::path& file) {
 bool is_preset_file(const std::string& preset) { return preset.ends_with(".json"); }
 
 std::string tuning_doubt(const TunedPreset& preset, const Result& result) {
-  const std::string simulation = simulation_of(result);
+  const std::string simulation = drive_of(result.from.simulated);
   const auto named = std::ranges::find_if(preset.tuned_on, [&](const TunedSequence& one) {
     const bool has_name = one.dataset == result.dataset && one.sequence == result.sequence.text();
     return one.simulation == simulation && (has_name || !simulation.empty());
@@ -106,10 +107,17 @@ std::string tuning_doubt(const TunedPreset& preset, const Result& result) {
     return fmt::format("tuned on this sequence: {} chose its settings on {}", preset.file.string(),
                        same->label);
   }
-  if (named == preset.tuned_on.end()) return "";
-  return fmt::format("tuned on a sequence of this {}: {} chose its settings on {}",
-                     simulation.empty() ? "name" : "simulation", preset.file.string(),
-                     named->label);
+  if (named != preset.tuned_on.end()) {
+    return fmt::format("tuned on a sequence of this {}: {} chose its settings on {}",
+                       simulation.empty() ? "name" : "simulation", preset.file.string(),
+                       named->label);
+  }
+  const auto seed = std::ranges::find_if(preset.tuned_on, [&](const TunedSequence& one) {
+    return !simulation.empty() && scene_of(one.simulation) == scene_of(simulation);
+  });
+  if (seed == preset.tuned_on.end()) return "";
+  return fmt::format("tuned on another seed of this scene: {} chose its settings on {}",
+                     preset.file.string(), seed->label);
 }
 
 }  // namespace mosbench

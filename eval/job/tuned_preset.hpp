@@ -14,7 +14,7 @@ namespace mosbench {
 struct TunedSequence {
   std::string label;  ///< "street-1 08": its data in the study, and its name
   std::string dataset, sequence;
-  std::string simulation;   ///< which one; empty for recorded data
+  std::string simulation;   ///< see `drive_of`; empty for recorded data
   std::string fingerprint;  ///< of its scans, without poses
 };
 
@@ -42,8 +42,8 @@ TunedPreset read_tuned_preset(const std::filesystem::path& file);
 bool is_preset_file(const std::string& preset);
 
 /// Returns the doubt about a result with these settings on a sequence that they were chosen on:
-/// also where only its name or its simulation tells, as of another part of it. Empty for other
-/// sequences.
+/// also where only its name or its simulation tells, as of another part of it, and on another seed
+/// of a scene. Empty for other sequences.
 std::string tuning_doubt(const TunedPreset& preset, const Result& result);
 
 }  // namespace mosbench

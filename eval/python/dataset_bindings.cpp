@@ -5,7 +5,7 @@
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/dataset.hpp"
-#include "datasets/sequence/pose_source.hpp"
+#include "datasets/sequence/pose_mark.hpp"
 #include "eval/cli/flags.hpp"
 #include "eval/engine/pose_finding.hpp"
 #include "eval/job/job.hpp"
@@ -74,7 +74,7 @@ void write_pose_file(const std::filesystem::path& file, const std::vector<py::ar
   if (!stamps_ns && has_foreign_mark(file)) {
     throw DataError(file.string() + ".frame", "is no mark of poses", "another name of the poses");
   }
-  if (!stamps_ns) mark_as_lidars(file, rows);
+  if (!stamps_ns) mark_poses(file, rows, {});
   write_file_atomic(file, rows);
 }
 

@@ -14,6 +14,7 @@
 
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/sequence/fingerprint.hpp"
+#include "datasets/sequence/pose_mark.hpp"
 #include "datasets/sequence/reading.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "eval/answer/answer.hpp"
@@ -235,6 +236,8 @@ std::string split_warning(const std::string& split);
 /// protocol does not know, one class alone in the truth, poses that odometry does not trust.
 std::vector<std::string> doubts_of(const Result& result);
 
+/// Returns the doubt about so many poses, some of which odometry does not trust; empty for none.
+std::string doubt_about(const std::vector<DoubtfulPose>& doubtful, std::size_t poses);
 /// Returns the run that wrote the labels at this place; nothing for labels of others.
 std::optional<Result> run_that_wrote(const std::filesystem::path& labels);
 /// Returns what makes labels of a run doubtful on these scans, whoever scores them: what was found
@@ -302,12 +305,12 @@ std::optional<std::string> changed_labels(const Result& result);
 /// Returns the mark of the data that a result is of.
 DataMark mark_of(const Result& result);
 
-/// Where marked data lie, and their mark.
+/// Where poses lie, and their mark.
 struct NamedMark {
   std::string place;
-  DataMark mark;
+  PoseMark mark;
 };
-/// The same of numbers that are of all these data.
+/// The same of numbers that are of all these poses.
 Standing standing_of(std::span<const NamedMark> marks);
 
 }  // namespace mosbench

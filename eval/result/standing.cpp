@@ -26,10 +26,20 @@ std::string words_of(const SimulatedOrigin& origin) {
 }
 
 /// Says each origin once, in their order.
-void add_origin(const std::string& origin, Standing& standing) {
-  const bool is_said = standing.origin.find(origin) != std::string::npos;
-  if (!is_said) standing.origin += (standing.origin.empty() ? "" : "; ") + origin;
-  standing.simulated = true;
+Standing with_origins(Standing standing, const std::vector<std::string>& origins) {
+  std::vector<std::string> said;
+  for (const std::string& origin : origins) {
+    if (std::ranges::find(said, origin) == said.end()) said.push_back(origin);
+  }
+  standing.simulated = !said.empty();
+  standing.origin = fmt::format("{}", fmt::join(said, "; "));
+  return standing;
+}
+
+void add_origins(const ResultSet& set, std::vector<std::string>& origins) {
+  for (const Result& sequence : set.sequences) {
+    if (sequence.from.simulated) origins.push_back(words_of(*sequence.from.simulated));
+  }
 }
 
 /// The first simulated sequence's.
@@ -82,12 +92,8 @@ void add_once(std::string doubt, std::vector<std::string>& doubts) {
 
 /// Adds those about poses that were found, and about scans that were not judged.
 void add_doubts_of_method(const Result& result, std::vector<std::string>& doubts) {
-  if (result.doubtful_poses && !result.doubtful_poses->empty()) {
-    const DoubtfulPose& first = result.doubtful_poses->front();
-    doubts.push_back(fmt::format("{} of {} found are doubtful, first that of scan {}: {}",
-                                 result.doubtful_poses->size(),
-                                 counted(result.scans.size(), "pose"), first.stem, first.doubt));
-  }
+  const auto& doubtful = result.doubtful_poses;
+  if (doubtful) add_once(doubt_about(*doubtful, result.scans.size()), doubts);
   if (!result.scans.empty() && std::ranges::none_of(result.scans, &ScanRow::judged)) {
     doubts.push_back(fmt::format("all {} labelled static without detection",
                                  counted(result.scans.size(), "scan is", "scans are")));
@@ -112,6 +118,13 @@ std::string split_warning(const std::string& split) {
   return fmt::format(
       "only the scans of split {}: not the protocol's number, which is over all labelled scans",
       split);
+}
+
+std::string doubt_about(const std::vector<DoubtfulPose>& doubtful, std::size_t poses) {
+  if (doubtful.empty()) return "";
+  const auto& [stem, doubt] = doubtful.front();
+  return fmt::format("{} of {} found are doubtful, first that of scan {}: {}", doubtful.size(),
+                     counted(poses, "pose"), stem, doubt);
 }
 
 std::vector<std::string> doubts_of(const Result& result) {
@@ -285,25 +298,20 @@ std::vector<std::string> warnings(const ResultSet& set) {
 }
 
 Standing standing_of(const ResultSet& set) {
-  Standing standing{.doubts = warnings(set)};
-  for (const Result& sequence : set.sequences) {
-    const std::optional<SimulatedOrigin>& origin = sequence.from.simulated;
-    if (!origin) continue;
-    add_origin(words_of(*origin), standing);
-  }
-  return standing;
+  std::vector<std::string> origins;
+  add_origins(set, origins);
+  return with_origins({.doubts = warnings(set)}, origins);
 }
 
 Standing standing_of(const ResultSet& first, const char* first_name, const ResultSet& second,
                      const char* second_name) {
-  const Standing one = standing_of(first), other = standing_of(second);
   std::vector<Doubt> doubts;
-  for (const std::string& doubt : one.doubts) doubts.push_back({first_name, doubt});
-  for (const std::string& doubt : other.doubts) doubts.push_back({second_name, doubt});
-  Standing both = one;
-  both.doubts = told(doubts);
-  if (other.simulated) add_origin(other.origin, both);
-  return both;
+  for (std::string& doubt : warnings(first)) doubts.push_back({first_name, std::move(doubt)});
+  for (std::string& doubt : warnings(second)) doubts.push_back({second_name, std::move(doubt)});
+  std::vector<std::string> origins;
+  add_origins(first, origins);
+  add_origins(second, origins);
+  return with_origins({.doubts = told(doubts)}, origins);
 }
 
 std::string simulated_notice(const SimulatedOrigin& origin) {
@@ -325,23 +333,21 @@ Standing standing_of(const Dataset& dataset, std::vector<Doubt> doubts) {
       if (!is_said) doubts.push_back({sequence->name(), std::move(doubt)});
     }
   }
-  Standing standing{.doubts = told(doubts)};
+  std::vector<std::string> origins;
   for (const std::unique_ptr<Sequence>& sequence : dataset.sequences) {
-    if (sequence->simulated()) add_origin(words_of(*sequence->simulated()), standing);
+    if (sequence->simulated()) origins.push_back(words_of(*sequence->simulated()));
   }
-  return standing;
+  return with_origins({.doubts = told(doubts)}, origins);
 }
 
 Standing standing_of(std::span<const NamedMark> marks) {
-  Standing standing;
+  std::vector<std::string> origins;
   std::vector<Doubt> doubts;
   for (const auto& [place, mark] : marks) {
-    if (mark.simulated) add_origin(words_of(*mark.simulated), standing);
-    std::string disturbed = disturbed_doubt(mark);
-    if (!disturbed.empty()) doubts.push_back({place, std::move(disturbed)});
+    if (mark.simulated) origins.push_back(words_of(*mark.simulated));
+    for (const std::string& doubt : mark.doubts) doubts.push_back({place, doubt});
   }
-  standing.doubts = told(doubts);
-  return standing;
+  return with_origins({.doubts = told(doubts)}, origins);
 }
 
 }  // namespace mosbench

@@ -200,8 +200,13 @@ void ResultFolder::check_replaceable() const {
   const std::vector<fs::path> found = entries(folder_);
   bool has_result = found.empty();
   for (const fs::path& path : found) {
-    has_result = has_result || path.filename() == kResult;
-    if (std::ranges::find(kWritten, path.filename()) == kWritten.end()) {
+    const std::string name = path.filename();
+    has_result = has_result || name == kResult;
+    // A killed run leaves a file half-written.
+    const auto is_ours = [&](const char* ours) {
+      return name == ours || is_partial_of(name, ours);
+    };
+    if (std::ranges::none_of(kWritten, is_ours)) {
       throw UsageError(path.string() +
                        ": was not written by mosbench run, expected --out to name a folder of "
                        "its own");

@@ -53,7 +53,7 @@ CellsOfSeeds DoneCells::by_seed(const WantedCell& wanted) const {
   CellsOfSeeds cells;
   for (const DoneCell& each : done) {
     if (!wanted(each.cell)) continue;
-    const std::string seed = fmt::format("{} {}", each.cell.data->name, each.cell.seed);
+    const std::string seed = fmt::format("{} {}", each.cell.sequence_label(), each.cell.seed);
     cells[each.sequence][seed] = &each.numbers;
   }
   return cells;

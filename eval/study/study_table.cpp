@@ -200,6 +200,8 @@ void count_cells(const StudyPlan& plan, StudyTable& table) {
     predicted_s += expected_s.value_or(0);
   }
   table.doubts = told_by_kind(doubts);
+  const std::string judging = doubt_about_judging(plan);
+  if (!judging.empty()) table.doubts.push_back(judging);
   if (table.done == 0) return;
   table.core_s = core_s;
   if (all_predicted) table.predicted_s = predicted_s;

@@ -11,6 +11,7 @@
 #include "datasets/text/json_text.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
+#include "eval/job/study_drives.hpp"
 
 namespace mosbench {
 namespace {
@@ -165,6 +166,29 @@ std::vector<StudyChoice> choices_of(const StudyPlan& plan, const DoneCells& cell
   }
   name_apart(choices);
   return choices;
+}
+
+std::string doubt_about_judging(const StudyPlan& plan) {
+  if (!plan.study->tuning) return "";
+  const auto& [metric, tune_on, judge_on] = *plan.study->tuning;
+  for (const PlannedCell& one : plan.cells) {
+    if (!names_sequence(tune_on, one.cell)) continue;
+    for (const PlannedCell& other : plan.cells) {
+      const bool is_judged = names_sequence(judge_on, other.cell);
+      if (!is_judged || !are_seeds_of_one_scene(one.cell, other.cell)) continue;
+      return fmt::format("best_of judges on \"{}\", another seed of the scene of \"{}\"",
+                         other.cell.sequence_label(), one.cell.sequence_label());
+    }
+  }
+  return "";
+}
+
+void check_presets(const StudyPlan& plan) {
+  if (!plan.study->tuning) return;
+  for (const std::string& label : DoneCells(plan).labels) {
+    const fs::path file = preset_file(plan.out, label);
+    if (is_there(file)) refuse_foreign(file);
+  }
 }
 
 void write_presets(const std::vector<StudyChoice>& choices) {

@@ -29,6 +29,13 @@ struct StudyChoice {
 /// the grid's order. It looks at no cell of the sequences to be judged on.
 std::vector<StudyChoice> choices_of(const StudyPlan& plan, const DoneCells& cells);
 
+/// Returns that a sequence is judged which is another seed of a scene that is tuned on; empty for
+/// none.
+std::string doubt_about_judging(const StudyPlan& plan);
+
+/// Throws UsageError where a file of the name that a row's preset gets is not one of a study.
+void check_presets(const StudyPlan& plan);
+
 /// Writes the file of each choice below the study's folder where it holds something else. Throws
 /// DataError.
 void write_presets(const std::vector<StudyChoice>& choices);

@@ -9,6 +9,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/rosbag/bag_reader.hpp"
+#include "datasets/sequence/pose_mark.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/result/result_file.hpp"
@@ -25,25 +26,26 @@ struct PosePath {
   std::string name;             ///< of the sequence, or the file's without extension
   std::filesystem::path place;  ///< the file, or the data set
   bool of_data_set = false;     ///< in the lidar's frame then, whatever its files hold
-  DataMark mark;                ///< of the scans that the poses are of
+  PoseMark mark;                ///< also of the scans that the poses are of
   PoseList list;                ///< stamps also where those of the data set's scans increase
 };
 
 constexpr const char* kExpected =
     "a data set, a folder of mosbench run --odometry, or files .txt, .csv or .tum";
 
-/// The mark of a run that found poses, or of the sequence beside whose scans they lie.
-DataMark mark_of_poses(const fs::path& file) {
+/// The mark of poses; of those beside an older run that found them, the mark of its data.
+PoseMark mark_of_path(const fs::path& file) {
+  PoseMark mark = mark_of_poses(file);
   const fs::path result = file.parent_path() / "result.json";
   try {
-    if (is_there(result)) return mark_of(read_result(result));
+    if (!mark.is_set() && is_there(result)) mark = pose_mark_of(mark_of(read_result(result)));
   } catch (const DataError&) {  // of another program
   }
-  return mark_of_file(file, 0);
+  return mark;
 }
 
 PosePath path_of_file(std::string name, const fs::path& file, std::optional<PoseFormat> format) {
-  PosePath path{std::move(name), file, false, mark_of_poses(file), read_pose_list(file, format)};
+  PosePath path{std::move(name), file, false, mark_of_path(file), read_pose_list(file, format)};
   if (path.list.poses.empty()) throw DataError(file, "holds no pose", "one row per scan");
   if (path.list.format == PoseFormat::kRollout) {
     for (Pose& pose : path.list.poses) pose = pose.inverse();
@@ -98,7 +100,7 @@ bool is_data_set(const fs::path& folder) {
 }
 
 PosePath path_of_sequence(const Sequence& sequence, const fs::path& root) {
-  PosePath path{sequence.name(), root, true, mark_as_read(sequence), {}};
+  PosePath path{sequence.name(), root, true, pose_mark_of(mark_as_read(sequence)), {}};
   for (std::size_t k = 0; k < sequence.size(); ++k) {
     path.list.poses.push_back(sequence.map_from_sensor(k));
     if (const auto stamp_ns = sequence.stamp_ns(k)) path.list.stamps_ns.push_back(*stamp_ns);

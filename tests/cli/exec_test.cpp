@@ -218,6 +218,47 @@ TEST_F(Exec, KeepsTheResultsOfEachStateOfAProgramInAStudy) {
   EXPECT_EQ(cli::run({"rank", "s.yaml", "--out", "out"}, there).exit_code, 0);
 }
 
+/// Runs and ranks a study of one program where its files lie.
+struct ProgramStudy {
+  ProgramStudy(const TempFolder& place, const std::string& program) : folder(place) {
+    folder.write("s.yaml",
+                 "name: s\nprotocol: semantickitti-mos\n"
+                 "data: {name: room, path: room, dataset: semantickitti}\n"
+                 "methods: [{name: ours, method: \"exec:" +
+                     program + "\"}]\n");
+  }
+  cli::Answer answer(const std::string& command) const {
+    std::vector<std::string> words = {command, "s.yaml", "--out", "out"};
+    if (command == "run") words.insert(words.end(), {"--threads", "1"});
+    return cli::run(words, [&] { fs::current_path(folder.path()); });
+  }
+  const TempFolder& folder;
+};
+
+TEST_F(Exec, ReadsResultsWhereFilesOfItsCommandAreGone) {
+  folder_.write("weights.pt", "weights");
+  folder_.write("ours.sh", client() + "\n");
+  const ProgramStudy study(folder_, "sh ours.sh # reads weights.pt");
+  ASSERT_EQ(study.answer("run").exit_code, 0);
+  const std::string table = study.answer("rank").out;
+  fs::remove(folder_ / "weights.pt");
+  fs::remove(folder_ / "ours.sh");
+  const cli::Answer rank = study.answer("rank");
+  EXPECT_EQ(rank.exit_code, 0) << rank.err;
+  EXPECT_EQ(rank.out, table);
+  EXPECT_THAT(study.answer("run").err, HasSubstr("names weights.pt behind its #"));
+}
+
+TEST_F(Exec, SaysInAStudyThatItChangesAFileOfItsCommand) {
+  folder_.write("log.txt", "");
+  const ProgramStudy study(folder_, client() + " 2>> log.txt; echo ran >> log.txt # log.txt");
+  const cli::Answer run = study.answer("run");
+  EXPECT_EQ(run.exit_code, 0) << run.out;
+  EXPECT_THAT(run.out, testing::AllOf(HasSubstr("STALE: "), HasSubstr("log.txt has changed since"),
+                                      Not(HasSubstr("INCOMPLETE"))));
+  EXPECT_THAT(run.err, HasSubstr("ours: a file that its command names has changed during the run"));
+}
+
 TEST_F(Exec, IsRefusedAtOnceWhereItNamesAFileThatIsNotThere) {
   for (const std::string name : {"weights.pt", "net/weights.onnx"}) {
     const cli::Answer answer = cli::run(command(client() + " # reads " + name));

@@ -191,6 +191,13 @@ TEST_F(Products, AreAddedToFinishedRunsAndKept) {
   EXPECT_THAT(unknown.err, HasSubstr("cubes"));
 }
 
+TEST_F(Products, AreMadeAfterAKillThatLeftOneHalfWritten) {
+  run("");
+  write_file_atomic(out("static.ply.mosbench.partial"), "ply");
+  run("static-cloud");
+  EXPECT_TRUE(is_there(out("static.ply")));
+}
+
 TEST_F(Products, ThatWereChangedAreRefused) {
   const std::string all = "boxes,moving-cloud,static-cloud,static-cloud-pcd";
   run(all);

@@ -304,9 +304,9 @@ TEST(Doubts, AreSaidOfATruthWithOneClassAlone) {
   EXPECT_THAT(run.out, HasSubstr("by the truth no counted point of 5 scans moves"));
 }
 
-class Writers : public testing::Test {
+class MarkWriters : public testing::Test {
  protected:
-  Writers() {
+  MarkWriters() {
     cli::write_small_sequence(folder_ / "room", 5);
     succeed({"run", room_, "--out", out_});
   }
@@ -314,7 +314,7 @@ class Writers : public testing::Test {
   const std::string room_ = (folder_ / "room").string(), out_ = (folder_ / "out").string();
 };
 
-TEST_F(Writers, OfScoresReplaceNoOthers) {
+TEST_F(MarkWriters, OfScoresReplaceNoOthers) {
   const std::string kept = (folder_ / "scores").string();
   const std::vector<std::string> words = {"score", room_, "--predictions", out_, "--out", kept};
   const auto with = [&](std::vector<std::string> more) {
@@ -335,7 +335,7 @@ TEST_F(Writers, OfScoresReplaceNoOthers) {
   EXPECT_NE(cli::contents(kept), before);
 }
 
-TEST_F(Writers, WriteWhatTheNameSays) {
+TEST_F(MarkWriters, WriteWhatTheNameSays) {
   const auto written = [&](const std::string& name, std::vector<std::string> words) {
     const std::string file = (folder_ / name).string();
     words.insert(words.end(), {"-o", file});
@@ -351,7 +351,7 @@ TEST_F(Writers, WriteWhatTheNameSays) {
   EXPECT_THAT(written("t.png", {"render", out_, "--scans", "4"}), HasSubstr("PNG"));
 }
 
-TEST_F(Writers, RefuseNamesOfOtherKindsOfFiles) {
+TEST_F(MarkWriters, RefuseNamesOfOtherKindsOfFiles) {
   const auto fault_of = [&](const std::string& name, std::vector<std::string> words) {
     const fs::path file = folder_ / name;
     words.insert(words.end(), {"-o", file.string()});
@@ -370,7 +370,7 @@ TEST_F(Writers, RefuseNamesOfOtherKindsOfFiles) {
   EXPECT_THAT(fault_of("x.pdf", {"compare", out_, out_}), HasSubstr("ends in .md"));
 }
 
-TEST_F(Writers, NameTheFileAndWhatItLacks) {
+TEST_F(MarkWriters, NameTheFileAndWhatItLacks) {
   const fs::path file = folder_ / "out/room/result.json";
   const std::string whole = read_file(file);
   const auto fault_without = [&](const std::vector<std::string>& path) {

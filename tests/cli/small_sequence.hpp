@@ -37,7 +37,9 @@ inline Point cast(double azimuth_rad, double height_m, double box_y_m, bool& mov
           static_cast<float>(height_m), 0.5F};
 }
 
-inline void write_small_sequence(const std::filesystem::path& folder, std::size_t scans) {
+/// Other scans of the crossing where it is further on from the first.
+inline void write_small_sequence(const std::filesystem::path& folder, std::size_t scans,
+                                 std::size_t further = 0) {
   for (std::size_t k = 0; k < scans; ++k) {
     std::vector<Point> points;
     std::vector<std::uint32_t> truth;
@@ -45,8 +47,8 @@ inline void write_small_sequence(const std::filesystem::path& folder, std::size_
       bool moving = false;
       const double azimuth_rad = 6.283185307179586 / kRays * (0.5 + static_cast<double>(i / kRows));
       const double height_m = 0.2 * static_cast<double>(i % kRows) - 2.3;
-      points.push_back(
-          cast(azimuth_rad, height_m, -2.5 + 0.2 * static_cast<double>(k % 26), moving));
+      points.push_back(cast(azimuth_rad, height_m,
+                            -2.5 + 0.2 * static_cast<double>((k + further) % 26), moving));
       truth.push_back(moving ? kMovingLabel : kStaticLabel);
     }
     write_bin(folder / "velodyne" / (stem(k) + ".bin"), points);

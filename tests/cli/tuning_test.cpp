@@ -1,9 +1,11 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "datasets/hdf5/hdf5_module.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -20,7 +22,7 @@ class Tuning : public testing::Test {
  protected:
   Tuning() {
     cli::write_small_sequence(folder_ / "data/sequences/00", 9);
-    cli::write_small_sequence(folder_ / "data/sequences/01", 12);
+    cli::write_small_sequence(folder_ / "data/sequences/01", 12, 9);
     folder_.write("s.yaml", R"(name: tune
 protocol: semantickitti-mos
 data: {name: small, path: data, dataset: semantickitti}
@@ -81,10 +83,12 @@ TEST_F(Tuning, WritesAPresetThatRunTakes) {
   EXPECT_THAT(part.out, HasSubstr("tuned on a sequence of this name"));
   // What the study did not write stays.
   write_file_atomic(preset, "my notes");
+  fs::remove_all(folder_ / "out/cells");
   const cli::Answer foreign = run({"run", path("s.yaml"), "--out", path("out"), "--threads", "1"});
   EXPECT_EQ(foreign.exit_code, 2);
   EXPECT_THAT(foreign.err, HasSubstr("underwood.preset.json: is there and no preset of a study"));
   EXPECT_EQ(read_file(preset), "my notes");
+  EXPECT_FALSE(is_there(folder_ / "out/cells")) << "found before any work";
 }
 
 TEST_F(Tuning, RefusesPresetsOfAnotherMethodAndOtherFiles) {
@@ -127,11 +131,77 @@ TEST_F(Tuning, RefusesToJudgeOnWhatItWasTunedOn) {
 )";
   EXPECT_THAT(refusal(copies, "b"), HasSubstr("tunes on \"a 00\" and judges on \"b 77\", which are "
                                               "the same drive"));
+  // Another layout, and all scans but one.
+  const auto convert = [&](const char* from, const char* layout) {
+    const cli::Answer answer =
+        run({"convert", path(from), "--layout", layout, "--out", path(layout)});
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  };
+  convert("copy", "helimos");
+  convert("helimos", has_hdf5() ? "opensceneflow" : "nuscenes");
+  for (const char* file : {"velodyne/000003.bin", "labels/000003.label"}) {
+    fs::remove(folder_ / "copy/sequences/77" / file);
+  }
+  std::string poses = read_file(folder_ / "copy/sequences/77/poses.txt");
+  folder_.write("copy/sequences/77/poses.txt", poses.substr(poses.find('\n') + 1));
+  for (const char* place : {"copy", "helimos", has_hdf5() ? "opensceneflow" : "nuscenes"}) {
+    const std::string dataset =
+        std::string_view(place) == "copy" ? "semantickitti" : std::string(place);
+    EXPECT_THAT(refusal("- {name: a, path: data, dataset: semantickitti, sequences: [\"00\"]}\n"
+                        "- {name: b, path: " +
+                            std::string(place) + ", dataset: " + dataset + "}\n",
+                        "b"),
+                HasSubstr("which are the same drive"))
+        << place;
+  }
   const std::string simulated =
       R"(- {name: a, simulate: {layout: semantickitti, scene: room, scans: 6, seed: 3}}
 - {name: b, simulate: {layout: doals, scene: room, scans: 8, seed: 3}}
 )";
   EXPECT_THAT(refusal(simulated, "b"), HasSubstr("which are the same drive"));
+  const cli::Answer made = run({"simulate", "--layout", "semantickitti", "--scene", "room",
+                                "--scans", "6", "--seed", "3", "--out", path("made")});
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_THAT(refusal(simulated.substr(0, simulated.find("- {name: b")) +
+                          "- {name: b, path: made, dataset: semantickitti}\n",
+                      "b"),
+              HasSubstr("which are the same drive"));
+}
+
+TEST_F(Tuning, MayJudgeOnAnotherSensorOfASimulation) {
+  folder_.write("s.yaml", R"(name: tune
+protocol: semantickitti-mos
+methods: [underwood]
+grid: {max_range_m: [3, 40]}
+data:
+- {name: a, simulate: {layout: helimos, scene: room, scans: 6, seed: 3}, sequences: [Aeva]}
+- {name: b, simulate: {layout: helimos, scene: room, scans: 6, seed: 3}, sequences: [Avia]}
+best_of: {metric: iou, tune_on: [a], judge_on: [b]}
+)");
+  const cli::Answer answer = run({"rank", path("s.yaml"), "--out", path("out")});
+  EXPECT_EQ(answer.exit_code, 1) << answer.err;
+}
+
+TEST_F(Tuning, TakesSeedsOfASceneForOneSequence) {
+  std::string data;
+  for (const char* seed : {"1", "2", "3"}) {
+    const cli::Answer made = run({"simulate", "--layout", "semantickitti", "--scene", "room",
+                                  "--scans", "6", "--seed", seed, "--out", path(seed)});
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    data += fmt::format("- {{name: s{0}, path: \"{0}\", dataset: semantickitti}}\n", seed);
+  }
+  const std::string head = "name: seeds\nprotocol: semantickitti-mos\ndata:\n" + data;
+  folder_.write("s.yaml", head +
+                              "- {name: small, path: data, dataset: semantickitti, sequences: "
+                              "[\"00\"]}\nmethods: [underwood, yoon]\n");
+  const cli::Answer study = run({"run", path("s.yaml"), "--out", path("out"), "--as", "json"});
+  ASSERT_EQ(study.exit_code, 0) << study.err;
+  EXPECT_EQ(ordered_json::parse(study.out).at("ranked_sequences"), 2);
+  folder_.write("s.yaml", head +
+                              "methods: [underwood]\ngrid: {max_range_m: [3, 40]}\n"
+                              "best_of: {metric: iou, tune_on: [s1], judge_on: [s2]}\n");
+  EXPECT_THAT(run({"rank", path("s.yaml"), "--out", path("best")}).out,
+              HasSubstr("best_of judges on \"s2 08\", another seed of the scene of \"s1 08\""));
 }
 
 TEST_F(Tuning, MayJudgeOnOtherScansOfADrive) {

@@ -8,6 +8,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/render.hpp"
+#include "eval/job/study_drives.hpp"
 #include "eval/job/study_file.hpp"
 #include "eval/job/tuned_preset.hpp"
 #include "eval/study/study_table.hpp"
@@ -200,9 +201,13 @@ TEST(TunedPresets, AreReadAsTheyAreWritten) {
   TunedPreset simulated = read;
   result.from.simulated = SimulatedOrigin{"doals", "room", "f", 9, 5};
   EXPECT_EQ(tuning_doubt(simulated, result), "");
-  simulated.tuned_on[0].simulation = simulation_of(result);
+  simulated.tuned_on[0].simulation = drive_of(result.from.simulated);
   EXPECT_THAT(tuning_doubt(simulated, result),
               HasSubstr("tuned on a sequence of this simulation: "));
+  result.from.simulated->seed = 6;
+  EXPECT_THAT(tuning_doubt(simulated, result), HasSubstr("tuned on another seed of this scene: "));
+  result.from.simulated->scene_fingerprint = "g";
+  EXPECT_EQ(tuning_doubt(simulated, result), "");
 }
 
 TEST(TunedPresets, AreRefusedWithTheirFile) {
