@@ -36,8 +36,6 @@ struct Config {
   double min_seed_share = 0.12;
   double max_aged_share = 0.5;
   double max_settled_share = 0.3;
-  double max_growth_m = 3.0;
-  double max_extent_m = 10.0;
 
   // No settings: nobody gains by other values on his own sensor.
   int max_unknown_voxels = 15;      ///< of the 125 voxels around a seed
@@ -49,7 +47,9 @@ struct Config {
   double min_fresh_share = 0.2;     ///< of an object's seeds: those of a parked car grow old
   double rise_radius_m = 6.0;       ///< of the ground around an object
   int min_rise_voxels = 2;          ///< above that, of a quarter of an object
-  double max_pure_extent_m = 20.0;  ///< as max_extent_m, of what consists of seeds: trucks
+  double max_growth_m = 3.0;        ///< from seeds, never through standing voxels
+  double max_extent_m = 10.0;       ///< of an object, along x and y of the map
+  double max_pure_extent_m = 20.0;  ///< of what consists of seeds: trucks
   double max_height_m = 4.5;        ///< of an object
   int min_track_steps = 1;          ///< before the next place is predicted; 0: never
 };
@@ -83,10 +83,6 @@ void visit_fields(AnyConfig& config, Visitor&& visit) {
       "max_settled_share", config.max_settled_share, FieldRange{0.0, 1000.0},
       "settled voxels beside an object, per voxel of its own: with more it is part of what stands, "
       "unless four fifths of it arrived");
-  visit("max_growth_m", config.max_growth_m, FieldRange{0.0, 1000.0},
-        "how far motion spreads from seeds; never through standing voxels");
-  visit("max_extent_m", config.max_extent_m, FieldRange{0.0, 1000.0},
-        "an object is at most so long along x and y of the map");
 }
 
 /// Throws std::invalid_argument "<key>: <what is wrong>, <what was expected>" for the first field
