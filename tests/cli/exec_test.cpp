@@ -256,7 +256,7 @@ TEST_F(Exec, SaysInAStudyThatItChangesAFileOfItsCommand) {
   const cli::Answer run = study.answer("run");
   EXPECT_EQ(run.exit_code, 0) << run.out;
   EXPECT_THAT(run.out, AllOf(HasSubstr("STALE: "), HasSubstr("log.txt has changed since"),
-                                      Not(HasSubstr("INCOMPLETE"))));
+                             Not(HasSubstr("INCOMPLETE"))));
   EXPECT_THAT(run.err, HasSubstr("ours: a file that its command names has changed during the run"));
 }
 
