@@ -339,9 +339,9 @@ class PlusTwin final : public Method {
         voxels += static_cast<double>(seen.voxels.size());
         arrived += seen.arrived, settled += seen.settled_beside;
       }
-      const bool stays = scan.tick - since >= 2 && settled > 0.05 * voxels &&
-                         arrived < 0.9 * voxels &&
-                         left_in_box(all) < 0.1 * static_cast<double>(component.voxels.size());
+      const bool stays =
+          scan.tick - since >= 2 && settled > 0.05 * voxels && arrived < 0.9 * voxels &&
+          left_in_box(all, scan.tick) < 0.1 * static_cast<double>(component.voxels.size());
       const bool is_attached =
           stays || (settled > c_.max_settled_share * voxels && arrived < 0.8 * voxels);
       component.moves =
@@ -366,12 +366,12 @@ class PlusTwin final : public Method {
            });
   }
 
-  /// How many voxels were left in the last second within the box around others.
-  double left_in_box(const SetOf& voxels) const {
+  /// How many voxels were left since a second before a tick within the box around others.
+  double left_in_box(const SetOf& voxels, int tick) const {
     double count = 0;
     for (const auto& [v, cell] : map_) {
-      const bool was_left =
-          is_known(&cell) && cell.state == kFree && cell.left && tick_ - cell.left_at <= 10;
+      const bool was_left = is_known(&cell) && cell.state == kFree && cell.left &&
+                            tick_ - cell.left_at <= std::min(10 + tick_ - tick, 100);
       if (was_left && gap_between({v}, voxels) <= 0) ++count;
     }
     return count;

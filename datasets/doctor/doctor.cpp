@@ -289,27 +289,33 @@ Checkup check_up(const std::filesystem::path& path, const OpenOptions& options,
 }
 
 std::optional<std::string> doubt_about_pose_frame(const Sequence& sequence) {
+  const PosesDone& read = sequence.reading().poses;
+  if (read.format != PoseFormat::kKitti || !read.frame) return std::nullopt;
   const auto files = sequence.files();
   const auto calib = std::ranges::find(files, "calib.txt", &std::filesystem::path::filename);
-  if (!tr_is_applied(sequence.reading()) || calib == files.end()) return std::nullopt;
-  const Pose tr = read_calib(*calib);
+  std::optional<Pose> tr;
+  if (calib != files.end()) tr = read_calib(*calib);
+  if (tr && is_identity(*tr)) tr.reset();
+  const bool of_camera = tr_is_applied(sequence.reading());
   const std::vector<Pose> poses = poses_of(sequence);
-  std::vector<Pose> rows;
-  for (const Pose& pose : poses) rows.push_back(tr * pose * tr.inverse());
+  const PoseConvention other = other_conventions(poses, tr, of_camera).front();
   ScanOverlap scans(sequence);
-  std::vector<double> turned, unturned;
-  for (const ScanPair& pair : telling_pairs(poses, rows)) {
+  std::vector<double> given_overlaps, other_overlaps;
+  for (const ScanPair& pair : telling_pairs(poses, other.map_from_sensor)) {
     if (!scans.has_points(pair)) continue;
-    turned.push_back(scans.overlap(pair, relative(poses, pair)));
-    unturned.push_back(scans.overlap(pair, relative(rows, pair)));
+    given_overlaps.push_back(scans.overlap(pair, relative(poses, pair)));
+    other_overlaps.push_back(scans.overlap(pair, relative(other.map_from_sensor, pair)));
   }
-  if (turned.size() < kFewestPairs) return std::nullopt;
-  const double as_camera = median(std::move(turned)), as_lidar = median(std::move(unturned));
-  if (as_lidar < as_camera + kBetterOverlap) return std::nullopt;
+  if (given_overlaps.size() < kFewestPairs) return std::nullopt;
+  const double given = median(std::move(given_overlaps)),
+               better = median(std::move(other_overlaps));
+  if (better < given + kBetterOverlap) return std::nullopt;
   return fmt::format(
-      "THE POSES FIT AS THOSE OF THE LIDAR: they were taken for the camera's, under which scans "
-      "overlap by {:.2f} instead of {:.2f}, so that labels are wrong; expected {}",
-      as_camera, as_lidar, option("pose_frame", "lidar"));
+      "THE POSES FIT AS THOSE OF THE {}: they were taken for the {}'s, under which scans overlap "
+      "by "
+      "{:.2f} instead of {:.2f}, so that labels are wrong; expected {}",
+      of_camera ? "LIDAR" : "CAMERA", of_camera ? "camera" : "lidar", given, better,
+      of_camera ? option("pose_frame", "lidar") : other.advice);
 }
 
 }  // namespace mosbench

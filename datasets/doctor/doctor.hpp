@@ -80,9 +80,8 @@ class SweepWatch {
   std::int64_t first_sweep_ns_ = 0;
 };
 
-/// A sentence for poses that were turned from the camera to the lidar by the Tr in calib.txt, where
-/// scans overlap clearly better under the rows as they stand in the file: nobody said that they are
-/// the camera's, and they seem to be the lidar's. Reads some scans, at most 10. Throws DataError.
+/// A sentence for KITTI's rows that were taken for the camera's where scans overlap clearly better
+/// if they are the lidar's, or the other way round. Reads some scans, at most 10. Throws DataError.
 std::optional<std::string> doubt_about_pose_frame(const Sequence& sequence);
 
 // The steps of `check_up`. Each leaves facts, and throws DataError.

@@ -51,7 +51,7 @@ std::vector<SequenceBreakdown> all_breakdowns(const StatsFlags& options, const D
     if (scans.empty()) continue;
     const OpenedPredictions opened = open_predictions(*options.predictions, *sequence, scans,
                                                       dataset.sequences.size() == 1, prediction);
-    const std::optional<Result> run = run_that_wrote(opened.path);
+    const std::optional<Result> run = run_that_wrote(opened);
     if (run) {
       for (std::string& doubt : doubts_of_labels(*run, *sequence)) {
         doubts.push_back({sequence->name(), std::move(doubt)});

@@ -105,8 +105,7 @@ Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran
   return result;
 }
 
-/// What the scans say about the frame of poses of a file, where nobody said it, and about poses
-/// that were not found by the scans.
+/// What the scans say about poses that were not found by them.
 std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence& sequence) {
   std::vector<std::string> doubts;
   const auto add = [&](std::optional<std::string> doubt) {
@@ -114,8 +113,7 @@ std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence&
     tell(fmt::format("{}: {}", sequence.name(), *doubt));
     doubts.push_back(std::move(*doubt));
   };
-  const Reading& reading = plan.job.data.reading;
-  if (reading.pose_file() != nullptr && !reading.pose_frame) add(doubt_about_pose_frame(sequence));
+  if (!plan.odometry) add(doubt_about_pose_frame(sequence));
   if (!plan.odometry && doubts.empty()) add(doubt_about_pose_fit(sequence));
   return doubts;
 }

@@ -187,11 +187,11 @@ std::string changed_since(const Result& run, const std::vector<ScanRow>& rows) {
 /// Adds what is known of the labels where a run wrote them.
 void add_doubts_of_run(const Sequence& sequence, const ScoreTask& task, SequenceScores& scores) {
   OpenedPredictions& opened = *scores.opened;
-  scores.run = run_that_wrote(opened.path);
+  scores.run = run_that_wrote(opened);
   if (!scores.run) return;
   std::ranges::move(doubts_of_labels(*scores.run, sequence), std::back_inserter(opened.doubts));
-  const bool as_written = opened.format == PredictionFormat::kLabel && !task.options.id_map;
-  std::string changed = as_written ? changed_since(*scores.run, scores.by_rule.front()) : "";
+  std::string changed =
+      !task.options.id_map ? changed_since(*scores.run, scores.by_rule.front()) : "";
   if (!changed.empty()) opened.doubts.push_back(std::move(changed));
 }
 

@@ -238,8 +238,8 @@ std::vector<std::string> doubts_of(const Result& result);
 
 /// Returns the doubt about so many poses, some of which odometry does not trust; empty for none.
 std::string doubt_about(const std::vector<DoubtfulPose>& doubtful, std::size_t poses);
-/// Returns the run that wrote the labels at this place; nothing for labels of others.
-std::optional<Result> run_that_wrote(const std::filesystem::path& labels);
+/// Returns the run whose folder of labels these predictions are; nothing for others.
+std::optional<Result> run_that_wrote(const OpenedPredictions& opened);
 /// Returns what makes labels of a run doubtful on these scans, whoever scores them: what was found
 /// in its data, settings and poses.
 std::vector<std::string> doubts_of_labels(const Result& run, const Sequence& sequence);

@@ -138,9 +138,12 @@ std::vector<std::string> doubts_of(const Result& result) {
   return doubts;
 }
 
-std::optional<Result> run_that_wrote(const fs::path& labels) {
+std::optional<Result> run_that_wrote(const OpenedPredictions& opened) {
   std::error_code ignored;
-  const fs::path file = fs::weakly_canonical(labels, ignored).parent_path() / "result.json";
+  const fs::path labels = fs::weakly_canonical(opened.path, ignored);
+  const bool may_be = opened.format == PredictionFormat::kLabel && labels.filename() == "labels";
+  if (!may_be) return std::nullopt;
+  const fs::path file = labels.parent_path() / "result.json";
   try {
     if (!is_there(file)) return std::nullopt;
     Result run = read_result(file);

@@ -168,6 +168,13 @@ TEST_F(Exec, IsStaleWhereItsLabelsAreScored) {
   ASSERT_EQ(cli::run(command("sh '" + script.string() + "'")).exit_code, 0);
   EXPECT_THAT(cli::run(keep).out, Not(HasSubstr("STALE")));
   EXPECT_THAT(cli::run({"rank", scores}).out, HasSubstr("exec:sh"));  // not "unnamed"
+  // Labels of others are not the run's, wherever they lie.
+  fs::copy(folder_ / "out/room/labels", folder_ / "out/room/mine");
+  EXPECT_THAT(cli::run({"score", room, "--predictions", folder_ / "out/room/mine", "--out",
+                        folder_ / "others"})
+                  .out,
+              HasSubstr("IoU"));
+  EXPECT_THAT(cli::run({"rank", folder_ / "others"}).out, HasSubstr("unnamed"));
   write_file_atomic(script, read_file(script) + "\n");
   const std::string stale = "STALE: " + script.string() + " has changed since";
   EXPECT_EQ(cli::run({"rank", scores}).exit_code, 3);

@@ -97,6 +97,23 @@ TEST_F(OdometryCommand, MarksItsPosesAsTheLidarsForCommandsThatReadThem) {
             cli::contents(folder_ / "camera/08/labels"));
 }
 
+TEST_F(OdometryCommand, KnowsCamerasPosesThatAreReadAsTheLidars) {
+  const char* doubt = "08: THE POSES FIT AS THOSE OF THE CAMERA: they were taken for the lidar's";
+  const std::string lost = path("lost"), sequence = lost + "/sequences/08";
+  std::filesystem::copy(folder_ / "sim", lost, std::filesystem::copy_options::recursive);
+  std::filesystem::copy(truth_, sequence + "/poses.txt");
+  const cli::Answer sound = run({"run", lost, "--out", path("sound")});
+  EXPECT_EQ(sound.exit_code, 0) << sound.err;
+  EXPECT_THAT(sound.out, testing::Not(HasSubstr("THE POSES")));
+  EXPECT_THAT(run({"run", lost, "--read", "pose_frame=lidar", "--out", path("told")}).out,
+              HasSubstr(doubt));
+  ASSERT_TRUE(std::filesystem::remove(sequence + "/calib.txt"));
+  const cli::Answer answer = run({"run", lost, "--out", path("run")});
+  EXPECT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr(doubt));
+  EXPECT_THAT(run({"rank", path("run"), "--as", "csv"}).out, HasSubstr(doubt));
+}
+
 TEST_F(OdometryCommand, ComparesTwoEstimatesAndDrawsThem) {
   for (const char* kind : {"simple", "kiss"}) {
     ASSERT_LE(run({"odometry", path("sim"), "-o", path(kind), "--odometry", kind}).exit_code, 1);

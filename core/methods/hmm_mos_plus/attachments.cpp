@@ -47,8 +47,8 @@ Box united(const Box& a, const Box& b) {
       {std::max(a.high.x, b.high.x), std::max(a.high.y, b.high.y), std::max(a.high.z, b.high.z)}};
 }
 
-/// Counts the voxels in a box that were left in the last second.
-std::size_t left_in(const Box& box, const RememberedMap& map) {
+/// Counts the voxels in a box that were left since a second before the tick `at`.
+std::size_t left_in(const Box& box, std::uint32_t at_tick, const RememberedMap& map) {
   std::size_t count = 0;
   const BlockIndex low = block_of(box.low), high = block_of(box.high);
   for (BlockIndex at = low; at.z <= high.z; ++at.z) {
@@ -56,7 +56,9 @@ std::size_t left_in(const Box& box, const RememberedMap& map) {
       for (at.x = low.x; at.x <= high.x; ++at.x) {
         const auto past = map.past_at(at);
         if (!past) continue;
-        for_each_cell(past->history.left_within(past->known.free, kSeenTicks, past->tick),
+        const std::uint32_t ticks =
+            std::min(kSeenTicks + past->tick - at_tick, BlockHistory::kMaxAgeTicks);
+        for_each_cell(past->history.left_within(past->known.free, ticks, past->tick),
                       [&](std::uint32_t cell) {
                         const Voxel v = voxel_at(at, cell);
                         const Box own{v, v};
@@ -117,7 +119,7 @@ bool Attachments::is_attached(const Seen& component, const RememberedMap& map) c
   return component.at - all.since >= kLeavesTicks &&
          all.settled > kStayingSettledShare * all.voxels &&
          all.arrived < kStayingArrivedShare * all.voxels &&
-         static_cast<double>(left_in(all.box, map)) <
+         static_cast<double>(left_in(all.box, component.at, map)) <
              kLeftShare * static_cast<double>(component.voxels);
 }
 
