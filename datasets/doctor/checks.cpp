@@ -182,6 +182,8 @@ std::vector<Check> table() {
       row(kFit, "poses that are off", {{"off_places", '>', 1}, {"off_share", '>', kMostlyOff}},
           kPosesAreOff, kDecides),
       row(kFit, "poses that are far off somewhere", {{"far_off_places", '>', 1}}, kPosesAreOff),
+      row(kEgo, "points of the vehicle", {{"ego_points", '>', 0}},
+          "{ego}; --read drop_ego=auto leaves them out", false, kNote),
       row(kRows, "misplaced rows", {{"misplaced_rows", '>', 0}}, "{misplaced}"),
 
       // Labels without anything moving for longer, a minute at 10 Hz, are doubtful: excerpts of

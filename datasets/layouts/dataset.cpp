@@ -15,6 +15,7 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
+#include "datasets/sequence/ego_points.hpp"
 #include "datasets/sequence/scan_range.hpp"
 #include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/text/errors.hpp"
@@ -361,6 +362,8 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
     check_positions(*sequence, folder);
     sequence->set_mark(mark_of(*sequence, folder, layout, path));
     if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
+    // As measured: what is mounted stays in the frame in which points were measured.
+    if (reading.drop_ego == DropEgo::kAuto) sequence = without_ego(std::move(sequence));
     dataset.sequences.push_back(with_point_times(std::move(sequence), reading));
   }
   dataset.splits = layout.splits != nullptr

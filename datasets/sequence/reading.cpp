@@ -99,6 +99,7 @@ ReadingMembers members_of(const ReadingDone& reading) {
   members.add(members_of(reading.poses));
   if (reading.undistortion) members.add("undistortion", to_string(*reading.undistortion));
   if (reading.hdl64_correction) members.add("hdl64_correction", "points raised by 0.205 degrees");
+  members.add("drop_ego", reading.drop_ego);
   if (reading.deskew) members.add("deskew", to_string(*reading.deskew));
   if (reading.perturb) members.add("perturb", to_string(*reading.perturb));
   return members.take();

@@ -106,6 +106,9 @@ struct Frame {
   std::optional<std::vector<std::uint32_t>> truth;  ///< raw label ids, one per point, when labelled
 };
 
+/// Makes a point a missing return, without truth.
+void lose_point(Frame& frame, std::size_t point);
+
 /// An ordered recording of one sensor. Opening it checks everything that needs no scan to be read
 /// (pairing of files, numbers of poses, file sizes) and leaves it in `recording()`; reading a scan
 /// checks the scan. A data set implements `read`, and `read_truth` where truth needs no points.
