@@ -177,6 +177,15 @@ std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
   return later || !by ? std::move(sequence) : deskewed(std::move(sequence), *by);
 }
 
+/// The sequence without what is to be left out, and with the points moved that are to be.
+std::unique_ptr<Sequence> corrected(std::unique_ptr<Sequence> sequence, const Reading& reading) {
+  if (reading.drop_scans == Drop::kAuto) sequence = without_useless_scans(std::move(sequence));
+  if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
+  // What is mounted stays in the frame in which points were measured.
+  if (reading.drop_ego == Drop::kAuto) sequence = without_ego(std::move(sequence));
+  return with_point_times(std::move(sequence), reading);
+}
+
 /// The file of a sequence's poses in a folder as `mosbench odometry` and `run --odometry` write it.
 std::filesystem::path pose_file_in(const std::filesystem::path& folder, const std::string& name) {
   for (const std::string& file : {name + ".txt", name + ".tum", name + "/poses.txt"}) {
@@ -361,14 +370,15 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
     std::unique_ptr<Sequence> sequence = opened(layout, folder, reading);
     check_positions(*sequence, folder);
     sequence->set_mark(mark_of(*sequence, folder, layout, path));
-    if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
-    // As measured: what is mounted stays in the frame in which points were measured.
-    if (reading.drop_ego == DropEgo::kAuto) sequence = without_ego(std::move(sequence));
-    dataset.sequences.push_back(with_point_times(std::move(sequence), reading));
+    dataset.sequences.push_back(std::move(sequence));
   }
   dataset.splits = layout.splits != nullptr
                        ? layout.splits(folders, dataset.sequences, dataset.remarks)
                        : named_splits(layout, folders);
+  for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
+    sequence = corrected(std::move(sequence), options.reading);
+  }
+  if (options.reading.drop_scans == Drop::kAuto) keep_left_scans(dataset);
   if (options.reading.perturb) perturb(dataset, options.reading);
   if (options.reading.scans) keep_range(dataset, *options.reading.scans);
   if (options.reading.refine_poses) refine(dataset, options.reading, refined);

@@ -251,7 +251,7 @@ class EgolessSequence : public SequenceAround {
       : SequenceAround(std::move(inner)), ego_(find_ego(this->inner())) {
     mutable_recording().reading.drop_ego = ego_.empty() ? "none found" : to_string(ego_);
     mutable_recording().remarks.push_back(
-        ego_.empty() ? "no points found that move with the vehicle, which has to go 8 m for it"
+        ego_.empty() ? "no points of the vehicle itself are found, for which poses have to move 8 m"
                      : "left out: " + to_string(ego_));
   }
 

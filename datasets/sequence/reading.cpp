@@ -91,6 +91,7 @@ ReadingMembers members_of(const PosesDone& poses) {
 ReadingMembers members_of(const ReadingDone& reading) {
   Members members;
   members.add("scans", reading.scans);
+  members.add("drop_scans", reading.drop_scans);
   members.add("scan_files", reading.scan_files);
   if (reading.bin_columns) members.add("bin_columns", std::to_string(*reading.bin_columns));
   members.add("point_times", reading.point_times);

@@ -60,7 +60,7 @@ struct Recording {
   SequenceName name;  ///< unique in a data set
   std::vector<ScanEntry> scans;
   std::vector<ScanEntry> left_out;   ///< scans on disk whose pose is not known; without truth
-  std::vector<ScanEntry> not_asked;  ///< scans on disk that `Reading::scans` leaves out
+  std::vector<ScanEntry> not_asked;  ///< scans on disk that `Reading` leaves out
   /// Files that decide what is read besides those of single scans: bag, poses, calibration, times.
   std::vector<std::filesystem::path> files;
   std::vector<std::filesystem::path> truth_files;

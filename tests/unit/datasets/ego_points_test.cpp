@@ -157,7 +157,7 @@ TEST(EgoPoints, BecomeMissingReturnsWithoutTruthWhereTheyAreToBeLeftOut) {
   const Dataset plain = open_dataset(folder / "s", {});
   EXPECT_THAT(members_of(plain.sequences[0]->reading()),
               testing::Not(Contains(testing::Key("drop_ego"))));
-  const Dataset left = open_dataset(folder / "s", {.reading = {.drop_ego = DropEgo::kAuto}});
+  const Dataset left = open_dataset(folder / "s", {.reading = {.drop_ego = Drop::kAuto}});
   const Sequence& sequence = *left.sequences[0];
   EXPECT_THAT(members_of(sequence.reading()),
               Contains(Pair("drop_ego", HasSubstr("points per scan of the vehicle itself"))));
@@ -172,8 +172,9 @@ TEST(EgoPoints, BecomeMissingReturnsWithoutTruthWhereTheyAreToBeLeftOut) {
   EXPECT_GT(std::ranges::count(*frame.truth, 0U), 100);
 
   const Dataset unposed =
-      open_dataset(folder / "s", {.reading = {.poses = ByOdometry{}, .drop_ego = DropEgo::kAuto}});
-  EXPECT_THAT(unposed.sequences[0]->remarks(), Contains(HasSubstr("no points found that move")));
+      open_dataset(folder / "s", {.reading = {.poses = ByOdometry{}, .drop_ego = Drop::kAuto}});
+  EXPECT_THAT(unposed.sequences[0]->remarks(),
+              Contains(HasSubstr("no points of the vehicle itself are found")));
 }
 
 }  // namespace
