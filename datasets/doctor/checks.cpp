@@ -70,7 +70,7 @@ std::vector<Check> table() {
 
       row(kPoints, "empty scans", {{"empty_scans", '>', 0}},
           "{empty_scans} of {scans_hold} no points, first {first_empty}; expected some in every "
-          "scan"),
+          "scan (--read drop_scans=auto leaves them out)"),
       row(kPoints, "byte order", {{"plausible_reversed", '>', 0.5}},
           "{plausible_reversed_percent:.0f} % of the points are in range when their bytes are "
           "reversed, {plausible_percent:.0f} % as they are; expected little-endian floats",
@@ -115,7 +115,8 @@ std::vector<Check> table() {
           "{labels_beyond} labelled points lie outside of {label_min_m:g} to {label_max_m:g} m; "
           "expected id 0 there, as published"),
       row(kLabelIds, "repeated scans", {{"repeated_scans", '>', 0}},
-          "scans hold the same points: {repeated_names}; expected every scan once"),
+          "scans hold the same points: {repeated_names}; expected every scan once (--read "
+          "drop_scans=auto leaves the others out)"),
 
       row(kStamps, "order", {{"stamps_backward", '>', 0}},
           "{stamps_backward} stamps are not later than the one before, first that of scan "
@@ -182,6 +183,8 @@ std::vector<Check> table() {
       row(kFit, "poses that are off", {{"off_places", '>', 1}, {"off_share", '>', kMostlyOff}},
           kPosesAreOff, kDecides),
       row(kFit, "poses that are far off somewhere", {{"far_off_places", '>', 1}}, kPosesAreOff),
+      row(kEgo, "points of the vehicle", {{"ego_points", '>', 0}},
+          "{ego}; --read drop_ego=auto leaves them out", false, kNote),
       row(kRows, "misplaced rows", {{"misplaced_rows", '>', 0}}, "{misplaced}"),
 
       // Labels without anything moving for longer, a minute at 10 Hz, are doubtful: excerpts of

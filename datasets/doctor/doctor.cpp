@@ -10,6 +10,7 @@
 #include "datasets/doctor/pose_fit.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
+#include "datasets/sequence/ego_points.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
 
@@ -38,6 +39,12 @@ void examine_poses(const Sequence& sequence, const std::filesystem::path& folder
   const auto conventions = other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading));
   checkup.poses =
       measure_poses(sequence, given, conventions, checkup.facts.number("step_s"), checkup.facts);
+}
+
+void examine_ego(const Sequence& sequence, Facts& facts) {
+  const EgoPlaces ego = find_ego(sequence);
+  facts["ego_points"] = ego.points_per_scan;
+  facts["ego"] = to_string(ego);
 }
 
 /// Turns an error into a symptom. The file that it names first becomes `where` if it is below
@@ -181,6 +188,8 @@ class Examination {
       examine_pose_fit(sequence, part.poses->given, FitDetail::kFull, part.facts);
       is_sound = !judge(Subject::kFit, part);
       judge(Subject::kRows, part);
+      examine_ego(sequence, part.facts);
+      judge(Subject::kEgo, part);
     });
     if (!is_sound) return;
     attempt(folder, [&] {

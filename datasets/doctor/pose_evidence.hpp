@@ -67,6 +67,7 @@ enum class Subject : std::uint8_t {
   kPoses,
   kFit,   ///< of poses in which nothing else was found
   kRows,  ///< of sound poses: others have detours of their own
+  kEgo,
   kLabels,
   kPublished,
   kWithin  ///< limits that single rows, motions or conventions were compared with already

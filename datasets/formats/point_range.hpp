@@ -24,4 +24,9 @@ inline bool is_finite(const Point& point) {
   return std::isfinite(point.x) && std::isfinite(point.y) && std::isfinite(point.z);
 }
 
+/// Returns whether a point is a return: finite and not (0, 0, 0).
+inline bool is_return(const Point& point) {
+  return is_finite(point) && (point.x != 0 || point.y != 0 || point.z != 0);
+}
+
 }  // namespace mosbench

@@ -168,7 +168,7 @@ std::string statement_of(const Dataset& dataset, const ConvertOptions& options) 
                                  {"compression", options.writing.compression}};
   for (const auto& sequence : dataset.sequences) {
     json["sequences"].push_back({{"name", sequence->name()},
-                                 {"reading", members_of(sequence->reading())},
+                                 {"reading", plan_of(*sequence)},
                                  {"file_stamp", file_stamp(*sequence)}});
   }
   return json.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -270,6 +270,23 @@ void convert_sequence(const Sequence& sequence, SequenceWriter& writer, LostCont
 }  // namespace
 
 bool is_unfinished_conversion(const fs::path& root) { return is_there(mark_of(root)); }
+
+ReadingMembers plan_of(const Sequence& sequence) {
+  const Recording& recording = sequence.recording();
+  const std::size_t lost = recording.left_out.size(), unasked = recording.not_asked.size();
+  ReadingMembers plan = {{"scans on disk", std::to_string(sequence.size() + lost + unasked)},
+                         {"scans without a pose", std::to_string(lost)}};
+  const ReadingDone& reading = recording.reading;
+  if (reading.drop_scans.empty()) plan.emplace_back("drop_scans", "off");
+  if (reading.drop_ego.empty()) plan.emplace_back("drop_ego", "off");
+  if (!reading.deskew && !reading.undistortion) plan.emplace_back("deskew", "none");
+  std::ranges::move(members_of(reading), std::back_inserter(plan));
+  if (const DataMark mark = mark_as_read(sequence); mark.is_set()) {
+    plan.emplace_back("mark", marker_name(mark));
+  }
+  plan.emplace_back("scans written", std::to_string(sequence.size()));
+  return plan;
+}
 
 std::vector<std::string> convert(
     const Dataset& dataset, const ConvertOptions& options,

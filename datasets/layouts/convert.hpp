@@ -22,6 +22,10 @@ struct ConvertOptions {
 /// Returns whether a conversion to the folder was not finished.
 bool is_unfinished_conversion(const std::filesystem::path& root);
 
+/// Returns what a conversion makes of a sequence, as (what, how): its scans, how they are read, and
+/// how many are written.
+ReadingMembers plan_of(const Sequence& sequence);
+
 /// Writes every frame of a data set in the layout, with the LiDAR's own poses, and for HeLiMOS the
 /// splits that the source has. Simulated data stay marked as such. After a kill the same conversion
 /// goes on with the first sequence that is not finished. Throws UsageError when `out` holds

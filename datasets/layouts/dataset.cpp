@@ -15,6 +15,7 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
+#include "datasets/sequence/ego_points.hpp"
 #include "datasets/sequence/pose_mark.hpp"
 #include "datasets/sequence/scan_range.hpp"
 #include "datasets/sequence/simulated_origin.hpp"
@@ -175,6 +176,15 @@ std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
   const bool later = reading.is_by_odometry() || deskews_by_refined_poses(reading);
   const std::optional<Deskew> by = deskew_of(*sequence, reading);
   return later || !by ? std::move(sequence) : deskewed(std::move(sequence), *by);
+}
+
+/// The sequence without what is to be left out, and with the points moved that are to be.
+std::unique_ptr<Sequence> corrected(std::unique_ptr<Sequence> sequence, const Reading& reading) {
+  if (reading.drop_scans == Drop::kAuto) sequence = without_useless_scans(std::move(sequence));
+  if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
+  // What is mounted stays in the frame in which points were measured.
+  if (reading.drop_ego == Drop::kAuto) sequence = without_ego(std::move(sequence));
+  return with_point_times(std::move(sequence), reading);
 }
 
 /// The file of a sequence's poses in a folder as `mosbench odometry` and `run --odometry` write it.
@@ -366,12 +376,16 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
         sequence->add_doubt(std::move(doubt));
       }
     }
-    if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
     dataset.sequences.push_back(with_point_times(std::move(sequence), reading));
+    dataset.sequences.push_back(std::move(sequence));
   }
   dataset.splits = layout.splits != nullptr
                        ? layout.splits(folders, dataset.sequences, dataset.remarks)
                        : named_splits(layout, folders);
+  for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
+    sequence = corrected(std::move(sequence), options.reading);
+  }
+  if (options.reading.drop_scans == Drop::kAuto) keep_left_scans(dataset);
   if (options.reading.perturb) perturb(dataset, options.reading);
   if (options.reading.scans) keep_range(dataset, *options.reading.scans);
   if (options.reading.refine_poses) refine(dataset, options.reading, refined);

@@ -324,16 +324,6 @@ std::span<const PerturbKey> perturb_keys() {
   return kKeys;
 }
 
-bool is_return(const Point& point) {
-  return is_finite(point) && (point.x != 0 || point.y != 0 || point.z != 0);
-}
-
-void lose_point(Frame& frame, std::size_t point) {
-  frame.points[point] = {0, 0, 0, 0};
-  if (frame.truth) (*frame.truth)[point] = 0;
-  if (!frame.radial_velocity_m_s.empty()) frame.radial_velocity_m_s[point] = 0;
-}
-
 void set_range(Point& point, double range_m, double new_range_m) {
   const double scale = new_range_m / range_m;
   point.x = static_cast<float>(point.x * scale);

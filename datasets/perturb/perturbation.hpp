@@ -95,10 +95,6 @@ struct PerturbKey {
 };
 std::span<const PerturbKey> perturb_keys();
 
-/// Returns whether a point is a return: finite and not (0, 0, 0).
-bool is_return(const Point& point);
-/// Makes a point a missing return, without truth.
-void lose_point(Frame& frame, std::size_t point);
 /// Moves a return along its ray.
 void set_range(Point& point, double range_m, double new_range_m);
 

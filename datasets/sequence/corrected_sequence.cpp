@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "datasets/formats/point_range.hpp"
 #include "datasets/sequence/portable_math.hpp"
 #include "datasets/text/numbers.hpp"
 
@@ -131,6 +132,10 @@ void ScanDeskewer::apply(std::size_t scan_index, Frame& frame) const {
   if (!move_by(scan_index, frame)) {
     frame.points = std::move(as_measured);
     return;
+  }
+  // Moved, a missing return would be one near the sensor.
+  for (std::size_t i = 0; i < as_measured.size(); ++i) {
+    if (!is_return(as_measured[i])) frame.points[i] = as_measured[i];
   }
   frame.point_times_ns.clear();
 }

@@ -32,7 +32,7 @@ class ScanDeskewer {
   /// Scans without stamps are taken to be 0.1 s apart.
   ScanDeskewer(Deskew by, const std::vector<ScanEntry>& scans);
 
-  /// Moves the points of a frame that has their times, and drops the times. Where the poses do not
+  /// Moves the returns of a frame that has their times, and drops the times. Where the poses do not
   /// cover the times (of the first or last scan), the frame stays as it is.
   void apply(std::size_t scan_index, Frame& frame) const;
 

@@ -91,6 +91,7 @@ ReadingMembers members_of(const PosesDone& poses) {
 ReadingMembers members_of(const ReadingDone& reading) {
   Members members;
   members.add("scans", reading.scans);
+  members.add("drop_scans", reading.drop_scans);
   members.add("scan_files", reading.scan_files);
   if (reading.bin_columns) members.add("bin_columns", std::to_string(*reading.bin_columns));
   members.add("point_times", reading.point_times);
@@ -99,6 +100,7 @@ ReadingMembers members_of(const ReadingDone& reading) {
   members.add(members_of(reading.poses));
   if (reading.undistortion) members.add("undistortion", to_string(*reading.undistortion));
   if (reading.hdl64_correction) members.add("hdl64_correction", "points raised by 0.205 degrees");
+  members.add("drop_ego", reading.drop_ego);
   if (reading.deskew) members.add("deskew", to_string(*reading.deskew));
   if (reading.perturb) members.add("perturb", to_string(*reading.perturb));
   return members.take();

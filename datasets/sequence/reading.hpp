@@ -55,6 +55,10 @@ enum class PointTimes : std::uint8_t {
 inline constexpr std::array<std::string_view, 7> kPointTimesNames = {
     "column", "azimuth", "s", "ms", "us", "ns", "steps"};
 
+/// Whether something is searched and left out.
+enum class Drop : std::uint8_t { kOff, kAuto };
+inline constexpr std::array<std::string_view, 2> kDropNames = {"off", "auto"};
+
 /// Where poses come from: the data set, a file of the user or a folder with one per sequence, later
 /// odometry, or nowhere, as the sensor stands still. Without poses every scan has the identity.
 struct OwnPoses {};
@@ -116,6 +120,8 @@ struct Reading {
   bool refine_poses = false;  ///< whether scans are registered to correct them
   /// Whether points of KITTI's HDL-64E are raised by the angle that its calibration misses.
   bool hdl64_correction = false;
+  Drop drop_ego = Drop::kOff;    ///< points of the vehicle itself
+  Drop drop_scans = Drop::kOff;  ///< scans without points, and those with the points of another
   /// Disturbances of what is read.
   std::optional<Perturbation> perturb = std::nullopt;
 
@@ -198,6 +204,12 @@ void visit_fields(Asked& reading, Visit&& visit) {
         "(default: 4, and files that clearly hold others are refused)");
   visit("hdl64_correction", reading.hdl64_correction, FieldText{},
         "Raise points by the 0.205 degrees that KITTI's calibration of its HDL-64E misses");
+  visit("drop_scans", reading.drop_scans, kDropNames,
+        "Leave out scans without points, and scans that repeat the points of an earlier one: auto "
+        "finds them (default: off)");
+  visit("drop_ego", reading.drop_ego, kDropNames,
+        "Leave out points of the vehicle itself and of what is mounted on it: auto finds them by "
+        "poses that move 8 m (default: off)");
   visit("perturb", reading.perturb, FieldText{"KIND=STRENGTH,...,seed=N"},
         "Disturb what is read, in this order, see `mosbench list perturbations`");
 }
@@ -236,6 +248,7 @@ struct ReadingDone {
   PosesDone poses = {};
   std::optional<BagUndistortion> undistortion = std::nullopt;  ///< of bags
   bool hdl64_correction = false;
+  std::string drop_scans = {}, drop_ego = {};  ///< what was left out
   std::optional<Deskew> deskew = std::nullopt;
   std::optional<Perturbation> perturb = std::nullopt;
 };

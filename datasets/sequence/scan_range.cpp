@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
+#include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -13,24 +16,24 @@
 namespace mosbench {
 namespace {
 
+/// A sequence without some of its scans.
 class SequencePart : public SequenceAround {
  public:
-  SequencePart(std::unique_ptr<Sequence> inner, const ScanRange& range)
+  /// `kept` has one value per scan.
+  SequencePart(std::unique_ptr<Sequence> inner, const std::vector<bool>& kept)
       : SequenceAround(std::move(inner)) {
     Recording& recording = mutable_recording();
-    const std::size_t all = size() + recording.left_out.size();
-    for (std::size_t k = 0; k < size(); ++k) {
-      if (range.holds(scan(k).number.value_or(k))) sources_.push_back(k);
+    std::vector<ScanEntry> scans;
+    for (std::size_t k = 0; k < kept.size(); ++k) {
+      ScanEntry& entry = recording.scans[k];
+      entry.number = entry.number.value_or(k);
+      if (kept[k]) sources_.push_back(k);
+      (kept[k] ? scans : recording.not_asked).push_back(std::move(entry));
     }
-    if (sources_.empty()) refuse(range);
-    for (const auto entries : {&Recording::scans, &Recording::left_out}) {
-      take_out(range, recording.*entries, recording.not_asked);
-    }
-    recording.reading.scans =
-        fmt::format("{}, {} of {}", to_string(range), size(), counted(all, "scan"));
-    recording.doubts.push_back("only a part of the sequence is read: " + recording.reading.scans);
+    recording.scans = std::move(scans);
   }
 
+  using Sequence::mutable_recording;
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override {
     inner().read(sources_.at(scan_index), frame);
@@ -40,26 +43,44 @@ class SequencePart : public SequenceAround {
   }
 
  private:
-  [[noreturn]] void refuse(const ScanRange& range) const {
-    throw UsageError(
-        fmt::format("{} chooses no scan of sequence {}, which has {}, expected some of {} to {}",
-                    option("scans", to_string(range)), name(), counted(size(), "scan"),
-                    scan(0).number.value_or(0), scan(size() - 1).number.value_or(size() - 1)));
-  }
-
-  /// Moves what is not in the range to the end of `others`.
-  static void take_out(const ScanRange& range, std::vector<ScanEntry>& scans,
-                       std::vector<ScanEntry>& others) {
-    std::vector<ScanEntry> kept;
-    for (std::size_t k = 0; k < scans.size(); ++k) {
-      const bool is_kept = range.holds(scans[k].number.value_or(k));
-      (is_kept ? kept : others).push_back(std::move(scans[k]));
-    }
-    scans = std::move(kept);
-  }
-
   std::vector<std::size_t> sources_;
 };
+
+[[noreturn]] void refuse(const Sequence& sequence, const ScanRange& range) {
+  const std::size_t last = sequence.size() - 1;
+  throw UsageError(
+      fmt::format("{} chooses no scan of sequence {}, which has {}, expected some of {} to {}",
+                  option("scans", to_string(range)), sequence.name(), counted(last + 1, "scan"),
+                  sequence.scan(0).number.value_or(0), sequence.scan(last).number.value_or(last)));
+}
+
+/// Scans that are not worth reading.
+struct UselessScans {
+  std::vector<bool> kept;  ///< all others
+  std::size_t empty = 0, repeated = 0;
+};
+
+/// Reads the scans of which another one has as many points.
+UselessScans useless_scans(const Sequence& sequence) {
+  std::unordered_map<std::size_t, std::size_t> scans_of_size;
+  for (const ScanEntry& scan : sequence.recording().scans) ++scans_of_size[scan.points];
+  UselessScans useless;
+  std::unordered_set<std::string> seen;
+  Frame frame;
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    const bool is_empty = sequence.point_count(k) == 0;
+    bool is_repeated = false;
+    if (!is_empty && scans_of_size[sequence.point_count(k)] > 1) {
+      sequence.read(k, frame);
+      const auto* bytes = reinterpret_cast<const char*>(frame.points.data());
+      is_repeated = !seen.insert(hash_of_text({bytes, frame.points.size() * sizeof(Point)})).second;
+    }
+    useless.empty += is_empty ? 1U : 0U;
+    useless.repeated += is_repeated ? 1U : 0U;
+    useless.kept.push_back(!is_empty && !is_repeated);
+  }
+  return useless;
+}
 
 }  // namespace
 
@@ -95,7 +116,34 @@ std::string to_string(const ScanRange& range) {
 std::unique_ptr<Sequence> with_scan_range(std::unique_ptr<Sequence> inner, const ScanRange& range) {
   const std::size_t all = inner->size() + inner->recording().left_out.size();
   if (range.from == 0 && range.step == 1 && range.to.value_or(all) >= all) return inner;
-  return std::make_unique<SequencePart>(std::move(inner), range);
+  const auto holds = [&](const ScanEntry& scan) { return range.holds(*scan.number); };
+  std::vector<bool> kept;
+  for (std::size_t k = 0; k < inner->size(); ++k) {
+    kept.push_back(range.holds(inner->scan(k).number.value_or(k)));
+  }
+  if (std::ranges::find(kept, true) == kept.end()) refuse(*inner, range);
+  auto part = std::make_unique<SequencePart>(std::move(inner), kept);
+  Recording& recording = part->mutable_recording();
+  const auto others = std::ranges::stable_partition(recording.left_out, holds);
+  std::ranges::move(others, std::back_inserter(recording.not_asked));
+  recording.left_out.erase(others.begin(), others.end());
+  recording.reading.scans =
+      fmt::format("{}, {} of {}", to_string(range), part->size(), counted(all, "scan"));
+  recording.doubts.push_back("only a part of the sequence is read: " + recording.reading.scans);
+  return part;
+}
+
+std::unique_ptr<Sequence> without_useless_scans(std::unique_ptr<Sequence> inner) {
+  const UselessScans useless = useless_scans(*inner);
+  const std::string found = fmt::format("{} empty, {} repeated", useless.empty, useless.repeated);
+  if (std::ranges::find(useless.kept, true) == useless.kept.end()) {
+    throw UsageError(fmt::format("{} leaves no scan of sequence {}, expected one with points",
+                                 option("drop_scans", "auto"), inner->name()));
+  }
+  auto part = std::make_unique<SequencePart>(std::move(inner), useless.kept);
+  part->mutable_recording().reading.drop_scans = found;
+  part->mutable_recording().remarks.push_back("scans left out: " + found);
+  return part;
 }
 
 }  // namespace mosbench

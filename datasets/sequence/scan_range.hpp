@@ -32,4 +32,8 @@ std::string to_string(const ScanRange& range);
 /// range. Throws UsageError when none is.
 std::unique_ptr<Sequence> with_scan_range(std::unique_ptr<Sequence> inner, const ScanRange& range);
 
+/// Returns the sequence in the same way without scans that have no points, and those that have the
+/// points of an earlier one bit for bit. Throws UsageError when none is left.
+std::unique_ptr<Sequence> without_useless_scans(std::unique_ptr<Sequence> inner);
+
 }  // namespace mosbench

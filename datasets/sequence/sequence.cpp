@@ -63,6 +63,12 @@ std::vector<std::filesystem::path> files_of(const Recording& recording) {
   return files;
 }
 
+void lose_point(Frame& frame, std::size_t point) {
+  frame.points[point] = {0, 0, 0, 0};
+  if (frame.truth) (*frame.truth)[point] = 0;
+  if (!frame.radial_velocity_m_s.empty()) frame.radial_velocity_m_s[point] = 0;
+}
+
 void Sequence::describe(std::size_t scan_index, Frame& frame) const {
   const ScanEntry& entry = scan(scan_index);
   frame.stem = entry.stem;

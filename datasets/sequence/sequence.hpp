@@ -60,7 +60,7 @@ struct Recording {
   SequenceName name;  ///< unique in a data set
   std::vector<ScanEntry> scans;
   std::vector<ScanEntry> left_out;   ///< scans on disk whose pose is not known; without truth
-  std::vector<ScanEntry> not_asked;  ///< scans on disk that `Reading::scans` leaves out
+  std::vector<ScanEntry> not_asked;  ///< scans on disk that `Reading` leaves out
   /// Files that decide what is read besides those of single scans: bag, poses, calibration, times.
   std::vector<std::filesystem::path> files;
   std::vector<std::filesystem::path> truth_files;
@@ -105,6 +105,9 @@ struct Frame {
   std::vector<float> radial_velocity_m_s;
   std::optional<std::vector<std::uint32_t>> truth;  ///< raw label ids, one per point, when labelled
 };
+
+/// Makes a point a missing return, without truth.
+void lose_point(Frame& frame, std::size_t point);
 
 /// An ordered recording of one sensor. Opening it checks everything that needs no scan to be read
 /// (pairing of files, numbers of poses, file sizes) and leaves it in `recording()`; reading a scan

@@ -29,6 +29,7 @@ struct ConvertFlags : DataWords {
   OdometryOptions odometry;
   ConvertOptions conversion;
   unsigned threads = hardware_threads();
+  bool check = false;
 };
 
 /// Takes "semantickitti" or, of bags, "ros2-mcap:zstd". Returns the name without compression.
@@ -69,9 +70,25 @@ void check_kept_speed(const ConvertFlags& options, DatasetKind source) {
       "expected the flag where the converted files are read");
 }
 
+/// Returns what would be written.
+Answer plan_answer(const Dataset& dataset, bool has_poses) {
+  Sheet sheet{.columns = {{"sequence", Unit::kText}, {"what", Unit::kText}, {"how", Unit::kText}}};
+  for (const auto& sequence : dataset.sequences) {
+    for (const auto& [what, how] : plan_of(*sequence)) {
+      sheet.rows.push_back({sequence->name(), what, how});
+    }
+  }
+  return {.text = "nothing is written\n",
+          .standing = has_poses ? standing_of(dataset) : Standing(),
+          .sheets = {sheet}};
+}
+
 Answer convert_dataset(ConvertFlags options) {
   ConvertOptions& conversion = options.conversion;
-  const std::string layout = set_layout(options.layout, conversion);
+  if (!options.check && (options.layout.empty() || conversion.out.empty())) {
+    throw UsageError("--layout and --out: not both are given, expected them, or --check");
+  }
+  const std::string layout = options.layout.empty() ? "" : set_layout(options.layout, conversion);
   const std::optional<OdometryChoice> odometry = named_odometry(options.odometry, options.reading);
   if (odometry) options.reading.poses = ByOdometry{};
   Dataset dataset = open_dataset(options);
@@ -84,6 +101,7 @@ Answer convert_dataset(ConvertFlags options) {
       set_poses(sequence, choice, find_poses(sequence, choice, options.threads));
     };
   }
+  if (options.check) return plan_answer(dataset, !odometry);
   std::optional<Progress> progress;
   std::size_t scans = 0;
   const auto count = [&](std::size_t done, std::size_t total) {
@@ -104,9 +122,10 @@ CommandRun add_convert(CLI::App& command) {
   add_dataset_flags(command, *options);
   add(command, "--layout " + type_of_names({kLayouts.begin(), kLayouts.end()}), options->layout,
       "Layout to write; ros2-mcap:zstd also says how a bag is compressed: none, lz4, bz2 "
-      "(ROS 1) or zstd (ROS 2) (default: lz4, of ros2-db3 none)")
-      ->required();
-  add(command, "--out DIR", options->conversion.out, "Root of the data set to write")->required();
+      "(ROS 1) or zstd (ROS 2) (default: lz4, of ros2-db3 none)");
+  add(command, "--out DIR", options->conversion.out, "Root of the data set to write");
+  command.add_flag("--check", options->check,
+                   "Say what would be written of which scans, points and poses, and write nothing");
   add_odometry_flag(command, options->odometry, "Find the poses by it instead of reading them");
   add_threads_flag(command, options->threads);
   return [options] { return convert_dataset(*options); };

@@ -211,6 +211,18 @@ TEST_F(DeskewedScans, AreStatedAndAreReadAsStoredUnlessTheyAreAskedFor) {
   EXPECT_NEAR(static_cast<double>(frame.point_times_ns[kPointsOfTurn / 2]), 0.05e9, 10);
 }
 
+TEST_F(DeskewedScans, KeepMissingReturnsWhereTheyAre) {
+  write({}, begun_s, true);
+  const std::filesystem::path file = folder_ / "s/velodyne/000002.bin";
+  std::string bytes = read_file(file);
+  constexpr std::size_t kMissing = 300;
+  std::fill_n(bytes.begin() + kMissing * 5 * sizeof(float), 3 * sizeof(float), '\0');
+  folder_.write("s/velodyne/000002.bin", bytes);
+  const Dataset moved = open_dataset(folder_ / "s", {.reading = by_column(Deskew::kPoses)});
+  const Point missing = moved.sequences[0]->read(2).points[kMissing];
+  EXPECT_EQ(std::abs(missing.x) + std::abs(missing.y) + std::abs(missing.z), 0.0F);
+}
+
 TEST_F(DeskewedScans, AreRefusedWithoutSensibleTimes) {
   write({}, begun_s, false);
   Reading four = by_column(std::nullopt);

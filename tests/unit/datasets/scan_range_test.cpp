@@ -113,6 +113,22 @@ std::vector<std::string> stems_of(const Sequence& sequence) {
   return stems;
 }
 
+TEST_F(ScanRangeOf, ASequenceWithoutEmptyAndRepeatedScansCountsAllOfThem) {
+  write_bin(folder_ / "s/velodyne/000005.bin", std::vector<Point>{{2, 1, 0, 0}});
+  write_bin(folder_ / "s/velodyne/000006.bin", std::vector<Point>{});
+  const Dataset left = open_dataset(folder_ / "s", {.reading = {.drop_scans = Drop::kAuto}});
+  const Sequence& sequence = *left.sequences.at(0);
+  ASSERT_THAT(stems_of(sequence), ElementsAre("000000", "000001", "000002", "000003", "000004",
+                                              "000007", "000008", "000009"));
+  EXPECT_EQ(sequence.read(5).points.at(0).x, 7.0F);
+  EXPECT_EQ(sequence.read_truth(6).at(0), 108U);
+  EXPECT_TRUE(is_left_out(sequence.recording(), "000006"));
+  EXPECT_THAT(members_of(sequence.reading()), Contains(Pair("drop_scans", "1 empty, 1 repeated")));
+  EXPECT_THAT(sequence.remarks(), Contains("scans left out: 1 empty, 1 repeated"));
+  EXPECT_THAT(stems_of(*open("4:9", {.drop_scans = Drop::kAuto}).sequences.at(0)),
+              ElementsAre("000004", "000007", "000008"));
+}
+
 TEST_F(ScanRangeOf, ASequenceKeepsPosesTruthAndNamesWithTheirScans) {
   const Dataset dataset = open("1:9:3");
   const Sequence& sequence = *dataset.sequences.at(0);
