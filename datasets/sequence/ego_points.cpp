@@ -23,10 +23,9 @@ constexpr double kStepM = 1.0;
 /// A scan hits nearly all of the vehicle, but single beams miss its edges.
 constexpr double kCoreShare = 0.9, kEdgeShare = 0.2;
 /// From where a place is looked at: no part of the vehicle may still be there.
-constexpr double kApartM = 4.0, kMostApartM = 12.0, kNearestLookM = 3.0;
-constexpr std::size_t kViewers = 4;
+constexpr double kApartM = 4.0, kMostApartM = 12.0, kNearestLookM = 4.0;
+constexpr std::size_t kViewers = 3;
 constexpr double kBeyondM = 0.5;
-/// Along a wall a few rays within half a cell of a place pass it, too.
 constexpr double kThroughShare = 0.8;
 constexpr std::uint32_t kFewestLooks = 3;
 
@@ -51,6 +50,9 @@ void for_neighbours(std::uint32_t cell, auto&& call) {
   }
 }
 
+/// What is seen of a place from elsewhere.
+enum class Sight : std::uint8_t { kUnknown, kThrough, kStands };
+
 /// The returns of a scan by their directions.
 class SightLines {
  public:
@@ -62,27 +64,37 @@ class SightLines {
     }
   }
 
-  /// Returns how far beyond a place the nearest return is of all rays within half a cell of it;
-  /// negative before it, nothing without such a ray.
-  std::optional<double> beyond_m(const Eigen::Vector3d& place_m) const {
+  /// Looks at a place with all rays within `kAroundM` of it. Along a wall or over the ground some
+  /// pass on the near side, but those on the far side end before.
+  Sight look_at(const Eigen::Vector3d& place_m) const {
     const double away_m = place_m.norm();
-    std::optional<double> nearest_m;
-    for_neighbours(key_of(place_m / away_m), [&](std::uint32_t key) {
+    const Eigen::Vector3d ahead = place_m / away_m;
+    const Eigen::Vector3d aside = ahead.unitOrthogonal(), up = ahead.cross(aside);
+    double nearest_m = kUnseenM, farthest_m = 0.0;
+    unsigned sides = 0;
+    for_neighbours(key_of(ahead), [&](std::uint32_t key) {
       const auto found = ends_m_.find(key);
       if (found == ends_m_.end()) return;
       for (const Eigen::Vector3d& end_m : found->second) {
-        const double range_m = end_m.norm();
-        if (end_m.cross(place_m).norm() > 0.5 * kCellM * range_m) continue;
-        nearest_m = std::min(nearest_m.value_or(range_m), range_m);
+        const Eigen::Vector3d by_m = end_m * (away_m / end_m.dot(ahead)) - place_m;
+        if (by_m.squaredNorm() > kAroundM * kAroundM) continue;
+        const double range_m = end_m.norm(), x = by_m.dot(aside), y = by_m.dot(up);
+        nearest_m = std::min(nearest_m, range_m);
+        farthest_m = std::max(farthest_m, range_m);
+        if (by_m.norm() < kCellM / 2) continue;
+        sides |= std::abs(x) > std::abs(y) ? (x > 0 ? 1U : 2U) : (y > 0 ? 4U : 8U);
       }
     });
-    if (nearest_m) *nearest_m -= away_m;
-    return nearest_m;
+    if (farthest_m < away_m - kBeyondM) return Sight::kUnknown;
+    if (nearest_m < away_m + kBeyondM) return Sight::kStands;
+    return sides == kAllSides ? Sight::kThrough : Sight::kUnknown;
   }
 
  private:
-  /// Wider than half a cell is at the nearest look.
-  static constexpr double kTurn = 0.02;
+  static constexpr double kAroundM = 0.2, kUnseenM = 1e9;
+  static constexpr unsigned kAllSides = 15;
+  /// Of a grid of directions: as wide as what is around the nearest place.
+  static constexpr double kTurn = kAroundM / kNearestLookM;
   static std::uint32_t key_of(const Eigen::Vector3d& direction) {
     const auto along = [](double part) {
       return static_cast<std::uint32_t>(std::floor(part / kTurn) + kSide / 2);
@@ -179,11 +191,11 @@ class EgoSearch {
         if (!is_in(hits_[place.cell], kEdgeShare)) continue;
         const Eigen::Vector3d place_m = viewer_from_map * place.on_map_m;
         if (place_m.norm() < kNearestLookM) continue;
-        const std::optional<double> beyond_m = lines.beyond_m(place_m);
-        if (!beyond_m || *beyond_m < -kBeyondM) continue;
+        const Sight sight = lines.look_at(place_m);
+        if (sight == Sight::kUnknown) continue;
         Looks& looks = looks_[place.cell];
         ++looks.all;
-        if (*beyond_m > kBeyondM) ++looks.through;
+        if (sight == Sight::kThrough) ++looks.through;
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ using testing::Pair;
 struct EgoScene {
   std::vector<SceneBox> standing, mounted;
   std::function<SceneBox(int k, const Pose& pose)> moving = {};
+  double jitter_rad = 0.01;  ///< of beams; without it they draw rings that move with the sensor
 };
 
 SceneBox at(const Eigen::Vector3d& position_m, const SceneBox& box) {
@@ -41,19 +43,26 @@ bool is_on(const SceneBox& box, const Point& point) {
 /// A drive through a scene whose scans are cast as they are read; the sensor looks along x.
 class EgoDrive : public Sequence {
  public:
-  EgoDrive(EgoScene scene, const std::vector<Pose>& poses) : scene_(std::move(scene)) {
-    for (const Pose& pose : poses) mutable_recording().scans.emplace_back().map_from_sensor = pose;
+  /// The poses that are told are off by up to `off_m` along each axis.
+  EgoDrive(EgoScene scene, const std::vector<Pose>& poses, double off_m = 0.0)
+      : scene_(std::move(scene)), poses_(poses) {
+    std::srand(1);
+    for (Pose pose : poses) {
+      pose.translation() += off_m * Eigen::Vector3d::Random();
+      mutable_recording().scans.emplace_back().map_from_sensor = pose;
+    }
   }
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override {
     describe(scan_index, frame);
     frame.truth.reset();
-    const Pose& pose = map_from_sensor(scan_index);
+    const Pose& pose = poses_[scan_index];
     const int k = static_cast<int>(scan_index);
     std::vector<SceneBox> boxes = scene_.standing;
     for (const SceneBox& box : scene_.mounted) boxes.push_back(at(pose.translation(), box));
     if (scene_.moving) boxes.push_back(scene_.moving(k, pose));
-    frame.points = scene_points(boxes, pose, k);
+    const auto seed = static_cast<unsigned>(k) + 1;
+    frame.points = scene_scan(boxes, pose, {.seed = seed, .jitter_rad = scene_.jitter_rad}).points;
   }
   bool is_mounted(const Point& point) const {
     return std::ranges::any_of(scene_.mounted, [&](const auto& box) { return is_on(box, point); });
@@ -61,6 +70,7 @@ class EgoDrive : public Sequence {
 
  private:
   EgoScene scene_;
+  std::vector<Pose> poses_;
 };
 
 std::vector<Pose> straight(double way_m, int scans = 60) {
@@ -123,6 +133,15 @@ TEST(EgoPoints, AreNoneWhereNothingIsMounted) {
     const EgoPlaces ego = find_ego(EgoDrive({standing, {}}, poses));
     EXPECT_TRUE(ego.empty()) << to_string(ego);
   }
+}
+
+TEST(EgoPoints, AreNoneOfTheGroundThatALowRobotSeesAtAGlance) {
+  const std::vector<SceneBox> ground = {{{-1e4, -1e4, -3}, {1e4, 1e4, -0.4}}};
+  for (const double off_m : {0.0, 0.03, 0.08}) {
+    const EgoPlaces ego = find_ego(EgoDrive({ground, {}, {}, 0.0}, straight(40, 80), off_m));
+    EXPECT_TRUE(ego.empty()) << off_m << ": " << to_string(ego);
+  }
+  expect_found(EgoDrive({mosbench::corridor(), arm()}, straight(30), 0.03));
 }
 
 TEST(EgoPoints, AreNoneOfACarThatFollows) {
