@@ -44,18 +44,19 @@ std::string why_short(double cpu_ms) {
 CostLimits cost_limits(std::string_view flag, const std::string& text) {
   CostLimits limits;
   for (const std::string_view part : split_at_commas(text)) {
-    if (part.empty()) continue;
     const std::size_t equals = std::min(part.find('='), part.size());
     const auto kind = std::ranges::find(kCostKinds, part.substr(0, equals), &CostKind::key);
     const bool has_value = equals < part.size();
     const double percent = has_value ? parse_double(part.substr(equals + 1)).value_or(-1.0) : -1.0;
     if (kind == kCostKinds.end() || percent < 0.0) {
       throw UsageError(
-          fmt::format("{} {}: is no limit, expected cpu, memory or bytes, and the "
+          fmt::format("{}: '{}' is no limit, expected cpu, memory or bytes, and the "
                       "percents by which it may grow, as in cpu=10,memory=20",
                       flag, part));
     }
-    limits[static_cast<std::size_t>(kind - kCostKinds.begin())] = percent / 100.0;
+    std::optional<double>& limit = limits[static_cast<std::size_t>(kind - kCostKinds.begin())];
+    if (limit) throw UsageError(fmt::format("{}: limits {} twice, expected once", flag, kind->key));
+    limit = percent / 100.0;
   }
   return limits;
 }

@@ -181,7 +181,8 @@ TEST(Gate, ComparesNoCpuWithoutACalibrationAndNoCostThatIsNotKnown) {
   ResultSet untimed = known;
   untimed.sequences[0].cost.reset();
   EXPECT_TRUE(check_costs(untimed, known, {}).empty());
-  for (const char* wrong : {"cpu", "cpu=", "cpu=x", "cpu=-1", "gpu=3"}) {
+  for (const char* wrong :
+       {"", "cpu=1,", "cpu", "cpu=", "cpu=x", "cpu=nan", "cpu=-1", "gpu=3", "cpu=10,cpu=1000"}) {
     EXPECT_THROW(cost_limits("--max-cost", wrong), UsageError) << wrong;
   }
 }
