@@ -43,8 +43,8 @@ Answer answer_of(const ResultSet& baseline, const ResultSet& newer, const Paired
   if (!result.costs.empty()) sheets.push_back(cost_sheet(result));
   nlohmann::ordered_json json = to_json(result);
   json["paired_scans"] = paired.scans.size();
-  json["missing_predictions"] = {{"baseline", missing_predictions(baseline)},
-                                 {"new", missing_predictions(newer)}};
+  json["missing_predictions"] = {{"baseline", missing_predictions(baseline.sequences)},
+                                 {"new", missing_predictions(newer.sequences)}};
   json["unlike"] = unlike;
   json["added_settings"] = paired.added_settings;
   std::vector<CheckResult> checks = gate_checks(result);
