@@ -69,15 +69,16 @@ struct Sheet {
   std::vector<Column> columns{};
   std::vector<std::vector<Cell>> rows{};
   std::vector<std::string> notes{};
-  std::string caption{};  ///< one line that LaTeX and HTML print with the table
+  std::string
+      caption{};  ///< one line that LaTeX (else the first of lead) and HTML print with the table
   /// Of each row alone, so many as rows; none: that of the answer is of all.
   std::vector<Standing> row_standing{};
 };
 
 /// Returns a sentence for each.
 std::vector<std::string> sentences(const Standing& standing);
-/// Returns what sentences of one kind have in common.
-std::string without_digits(std::string sentence);
+/// Gives sentences that differ in their numbers alone one text, with "..." for each number.
+void say_by_kind(const std::vector<std::string*>& sentences);
 
 /// One thing that was checked.
 struct CheckResult {

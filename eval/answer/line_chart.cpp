@@ -144,11 +144,14 @@ Picture line_charts(std::span<const LineChart> charts, std::size_t size_pixels,
                     std::span<const std::string> marks) {
   constexpr int kMarkLine = Picture::kGlyphHeight + 4;
   const Palette colours = palette(false);
-  Picture picture(charts.size() * size_pixels, size_pixels + marks.size() * kMarkLine,
-                  colours.background);
+  constexpr int kIndent = 8;
+  const std::size_t width = charts.size() * size_pixels;
+  const std::vector<std::string> lines =
+      wrapped(marks, (width - 2 * kIndent) / Picture::kGlyphWidth);
+  Picture picture(width, size_pixels + lines.size() * kMarkLine, colours.background);
   int below = static_cast<int>(size_pixels);
-  for (const std::string& mark : marks) {
-    picture.text(8, below, mark, colours.text);
+  for (const std::string& mark : lines) {
+    picture.text(kIndent, below, mark, colours.text);
     below += kMarkLine;
   }
   int left = 0;

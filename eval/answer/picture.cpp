@@ -148,6 +148,20 @@ void Picture::text(int x, int y, std::string_view text, Colour colour, int scale
   }
 }
 
+std::vector<std::string> wrapped(std::span<const std::string> lines, std::size_t most) {
+  std::vector<std::string> parts;
+  for (std::string_view rest : lines) {
+    while (rest.size() > most) {
+      const std::size_t blank = rest.rfind(' ', most);
+      const bool is_word = blank == rest.npos || blank == 0;
+      parts.emplace_back(rest.substr(0, is_word ? most : blank));
+      rest.remove_prefix(is_word ? most : blank + 1);
+    }
+    parts.emplace_back(rest);
+  }
+  return parts;
+}
+
 std::string Picture::png() const {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;

@@ -64,6 +64,9 @@ class Picture {
   std::vector<Colour> pixels_;
 };
 
+/// Breaks lines at blanks, longer words anywhere, so that none has more letters than `most`.
+std::vector<std::string> wrapped(std::span<const std::string> lines, std::size_t most);
+
 /// A line through points (x, y) that are finite; a ring around a single one.
 struct Curve {
   std::string name;
@@ -80,8 +83,7 @@ struct LineChart {
 };
 
 /// Draws charts side by side, each `size_pixels` wide and high, with axes that show all points and
-/// the names of the curves. A later curve lies over an earlier one. Below them stand the marks, as
-/// far as there is room for their words.
+/// the names of the curves. A later curve lies over an earlier one. Below them stand the marks.
 Picture line_charts(std::span<const LineChart> charts, std::size_t size_pixels,
                     std::span<const std::string> marks = {});
 

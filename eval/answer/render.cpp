@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <sstream>
 
@@ -126,7 +127,9 @@ std::string key_of_end(const Column& column, const char* end) {
   return key.substr(0, key.size() - unit.size()) + end + unit;
 }
 
-std::string csv_of(const Sheet& sheet, const std::optional<Standing>& standing) {
+std::string csv_of(const Sheet& sheet, const Answer& answer) {
+  const std::optional<Standing>& standing = answer.standing;
+  const std::vector<std::string> beside = doubts_beside_rows(answer);
   std::vector<std::string> cells;
   std::vector<bool> wide;
   for (std::size_t c = 0; c < sheet.columns.size(); ++c) {
@@ -154,7 +157,8 @@ std::string csv_of(const Sheet& sheet, const std::optional<Standing>& standing) 
       }
     }
     if (standing) {
-      const Standing& own = sheet.row_standing.empty() ? *standing : sheet.row_standing.at(r);
+      Standing own = sheet.row_standing.empty() ? *standing : sheet.row_standing.at(r);
+      if (!sheet.row_standing.empty()) std::ranges::copy(beside, std::back_inserter(own.doubts));
       cells.push_back(fmt::format("{}", fmt::join(sentences(own), "; ")));
     }
     text += csv_row(cells);
@@ -177,13 +181,13 @@ Sheet sheet_of_lines(const Answer& answer) {
 }
 
 std::string csv_of(const Answer& answer) {
-  if (answer.records) return csv_of(*answer.records, answer.standing);
+  if (answer.records) return csv_of(*answer.records, answer);
   std::string text;
   for (const Sheet& sheet : answer.sheets) {
     if (sheet.columns.empty()) continue;
-    text += (text.empty() ? "" : "\n") + csv_of(sheet, answer.standing);
+    text += (text.empty() ? "" : "\n") + csv_of(sheet, answer);
   }
-  return text.empty() ? csv_of(sheet_of_lines(answer), answer.standing) : text;
+  return text.empty() ? csv_of(sheet_of_lines(answer), answer) : text;
 }
 
 ordered_json cell_json(const Cell& cell) {

@@ -30,6 +30,8 @@ std::vector<std::string> marks_of(const Answer& answer);
 /// Returns those that stand with one of its sheets: all with the first, and with other tables that
 /// their data are simulated.
 std::vector<std::string> marks_at(const Answer& answer, std::size_t sheet);
+/// Returns the doubts that no row of a sheet tells, which are of the whole answer.
+std::vector<std::string> doubts_beside_rows(const Answer& answer);
 /// Returns the message of a check with the first two of them in brackets, as it is shown alone.
 std::string message_of(const CheckResult& check, const std::vector<std::string>& marks);
 /// Returns its sheets, or an empty one where there is none and something to say above it.

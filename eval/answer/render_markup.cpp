@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <set>
 #include <sstream>
 #include <utility>
 
@@ -54,51 +56,54 @@ std::string replaced(std::string_view text, Replacements by) {
   return line;
 }
 
-/// What is told of a whole table; doubts about single rows stand with these.
+/// What is told of a whole table; doubts about single rows stand with those.
 Lines table_marks(const Answer& answer, const Sheet& sheet) {
   if (sheet.row_standing.empty() || !answer.standing) return marks_of(answer);
-  return sentences({answer.standing->simulated, answer.standing->origin});
+  const Standing& all = *answer.standing;
+  return sentences({all.simulated, all.origin, doubts_beside_rows(answer)});
 }
 
 /// What is doubtful about rows, one foot line per kind with the letter that its rows bear.
 class Footnotes {
  public:
   explicit Footnotes(const Sheet& sheet) {
-    for (const Standing& row : sheet.row_standing) {
-      std::string letters;
-      for (const std::string& doubt : row.doubts) {
-        const char letter = letter_of(doubt);
-        if (letters.find(letter) == letters.npos) letters += letter;
-      }
-      std::ranges::sort(letters);
+    std::vector<Standing> rows = sheet.row_standing;
+    std::vector<std::string*> doubts;
+    for (Standing& row : rows) {
+      for (std::string& doubt : row.doubts) doubts.push_back(&doubt);
+    }
+    say_by_kind(doubts);
+    for (const Standing& row : rows) {
+      std::set<std::ptrdiff_t> places;
+      for (const std::string& doubt : row.doubts) places.insert(place_of(doubt));
+      Lines letters;
+      std::ranges::transform(places, std::back_inserter(letters), letter_of);
       marks_.push_back(letters.empty() ? "" : fmt::format("$^{{{}}}$", fmt::join(letters, ",")));
     }
   }
   std::string mark(std::size_t row) const { return marks_.empty() ? "" : marks_.at(row); }
   Lines lines() const {
     Lines lines;
-    for (std::size_t i = 0; i < texts_.size(); ++i) {
-      lines.push_back(fmt::format("$^{{{}}}$ {}", letter_of(i), latex_text(texts_[i])));
+    for (const std::string& text : texts_) {
+      const auto place = &text - texts_.data();
+      lines.push_back(fmt::format("$^{{{}}}$ {}", letter_of(place), latex_text(text)));
     }
     return lines;
   }
 
  private:
-  /// The last letter is of all that have none.
-  static char letter_of(std::size_t kind) {
-    return static_cast<char>('a' + std::min<std::size_t>(kind, 25));
+  /// "a" to "z", then "aa".
+  static std::string letter_of(std::ptrdiff_t place) {
+    const std::string before = place < 26 ? "" : letter_of(place / 26 - 1);
+    return before + static_cast<char>('a' + place % 26);
   }
-  char letter_of(const std::string& doubt) {
-    const std::string kind = without_digits(doubt);
-    const auto found = static_cast<std::size_t>(std::ranges::find(kinds_, kind) - kinds_.begin());
-    if (found == kinds_.size()) {
-      kinds_.push_back(kind);
-      texts_.push_back(doubt);
-    }
-    return letter_of(found);
+  std::ptrdiff_t place_of(const std::string& doubt) {
+    const auto place = std::ranges::find(texts_, doubt) - texts_.begin();
+    if (place == std::ssize(texts_)) texts_.push_back(doubt);
+    return place;
   }
 
-  Lines marks_, kinds_, texts_;
+  Lines marks_, texts_;
 };
 
 /// A tabular. What must stay with the numbers is printed below them, and a dagger leads there.
@@ -119,7 +124,9 @@ std::string latex_table(const Sheet& sheet, const Lines& marks) {
     text += fmt::format("\\multicolumn{{{}}}{{l}}{{{}}} \\\\\n",
                         std::max<std::size_t>(table.heads.size(), 1), line);
   };
-  if (!sheet.caption.empty()) add_foot(latex_text(sheet.caption));
+  const bool leads = sheet.caption.empty() && !sheet.lead.empty();
+  const std::string& caption = leads ? sheet.lead.front() : sheet.caption;
+  if (!caption.empty()) add_foot(latex_text(caption));
   for (const std::string& mark : marks) add_foot("$^\\dagger$ " + latex_text(mark));
   std::ranges::for_each(footnotes.lines(), add_foot);
   return text + "\\end{tabular}\n";

@@ -60,7 +60,7 @@ GateResult judged(const CompareFlags& options, const ResultSet& baseline, const 
   GateResult result =
       judge(paired, *baseline.front().protocol,
             {options.max_drop_points / 100.0, rule, options.max_added_false_positives});
-  const CostLimits limits = cost_limits("--max-cost", options.max_cost);
+  const CostLimits& limits = options.max_cost;
   result.costs = check_costs(baseline, newer, limits);
   for (std::size_t k = 0; k < limits.size(); ++k) {
     const bool is_known = std::ranges::any_of(

@@ -43,8 +43,8 @@ Answer answer_of(const ResultSet& baseline, const ResultSet& newer, const Paired
   if (!result.costs.empty()) sheets.push_back(cost_sheet(result));
   nlohmann::ordered_json json = to_json(result);
   json["paired_scans"] = paired.scans.size();
-  json["missing_predictions"] = {{"baseline", missing_predictions(baseline)},
-                                 {"new", missing_predictions(newer)}};
+  json["missing_predictions"] = {{"baseline", missing_predictions(baseline.sequences)},
+                                 {"new", missing_predictions(newer.sequences)}};
   json["unlike"] = unlike;
   json["added_settings"] = paired.added_settings;
   std::vector<CheckResult> checks = gate_checks(result);
@@ -158,12 +158,15 @@ CommandRun add_compare(CLI::App& command) {
   add(command, "BASELINE DIR", options->baseline, "Accepted results")->required();
   add(command, "NEW DIR", options->newer, "Results to judge")->required();
   add(command, "--max-drop", options->max_drop_points, "Percentage points of IoU that may be lost")
-      ->check(CLI::Range(0.0, 100.0))
+      ->check(number_in(0.0, 100.0))
       ->capture_default_str();
   add(command, "--max-added-fp", options->max_added_false_positives,
       "False positives per scan that may be added (10 where nothing moves)")
-      ->check(CLI::NonNegativeNumber);
-  add(command, "--max-cost KEY=PERCENT,...", options->max_cost,
+      ->check(number_in(0.0, 1e9));
+  const auto limit_cost = [options](const std::string& text) {
+    options->max_cost = cost_limits("--max-cost", text);
+  };
+  add(command, "--max-cost KEY=PERCENT,...", limit_cost,
       "Percents by which cpu, memory and bytes may grow; else they only warn");
   command.add_flag("--statistical", options->statistical,
                    "A drop must also exceed what its 95 % interval leaves open");
@@ -178,6 +181,7 @@ CommandRun add_compare(CLI::App& command) {
       "Data set of both, for --by object (default: where BASELINE read it)");
   add_dataset_kind_flag(command, options->dataset)->group(kRareGroup);
   add(command, "--top", options->top, "How many scans and objects --by lists")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{1000000}))
       ->capture_default_str()
       ->group(kRareGroup);
   command.add_flag("--accept", options->accept,

@@ -25,7 +25,7 @@ struct CompareFlags {
   std::string accept;  ///< why; "true" where nothing was said
   std::vector<std::string> by, sequences;
   std::string method;
-  std::string max_cost;
+  CostLimits max_cost;
   std::optional<std::filesystem::path> data;
   std::string dataset = "auto";
   std::size_t top = 10;

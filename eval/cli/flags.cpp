@@ -159,6 +159,16 @@ void take_odometry(const std::string& part, OdometryOptions& odometry) {
 
 }  // namespace
 
+CLI::Validator number_in(double lowest, double highest) {
+  const auto check = [=](const std::string& text) {
+    const auto number = parse_double(text);
+    if (number && *number >= lowest && *number <= highest) return std::string();
+    return fmt::format("'{}' is not legal, expected a number from {:g} to {:g}", text, lowest,
+                       highest);
+  };
+  return {check, fmt::format("FLOAT in [{:g} - {:g}]", lowest, highest)};
+}
+
 CLI::Option* add_list(CLI::App& command, const std::string& shown, std::vector<std::string>& target,
                       const std::string& meaning) {
   return add(command, shown, target, meaning)->delimiter(',')->allow_extra_args(false);

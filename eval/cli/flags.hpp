@@ -35,6 +35,9 @@ CLI::Option* add(CLI::App& command, const std::string& shown, Target& target,
   return blank == shown.npos ? option : option->type_name(shown.substr(blank + 1));
 }
 
+/// Checks that a flag is a number in this range: CLI::Range lets nan pass.
+CLI::Validator number_in(double lowest, double highest);
+
 /// Adds a flag that takes a list, "a,b", in one argument.
 CLI::Option* add_list(CLI::App& command, const std::string& shown, std::vector<std::string>& target,
                       const std::string& meaning);

@@ -64,7 +64,7 @@ CommandRun add_render(CLI::App& command) {
       "video or a folder of pictures")
       ->required();
   add(command, "--per-s", options->per_s, "Pictures per second of a video")
-      ->check(CLI::Range(0.1, 120.0))
+      ->check(number_in(0.1, 120.0))
       ->capture_default_str();
   add(command, "-o,--out FILE", options->out,
       "PNG file to write, - is stdout; of --scans .mp4, .gif or a folder")
@@ -74,7 +74,7 @@ CommandRun add_render(CLI::App& command) {
       "Folder of the data set (default: where the run read it)");
   add(command, "--range", options->picture.range_m,
       "Metres from the sensor to the edge (default: what holds 98 % of the points)")
-      ->check(CLI::Range(1.0, 1000.0));
+      ->check(number_in(1.0, 1000.0));
   add(command, "--size", options->picture.size_pixels, "Width and height in pixels")
       ->check(CLI::Range(200, 8000))
       ->capture_default_str();

@@ -43,7 +43,7 @@ CommandRun add_report(CLI::App& command) {
       "Folder of the data set (default: where the run read it)");
   add(command, "--scans SCANS", options->scans, "Scans to show in 3-D")->capture_default_str();
   add(command, "--max-mb", options->report.max_mb, "Largest size of the file, 1e6 bytes")
-      ->check(CLI::Range(0.1, 1000.0))
+      ->check(number_in(0.1, 1000.0))
       ->capture_default_str();
   return [options] { return write_report(*options); };
 }

@@ -149,7 +149,7 @@ void add_prediction_options(CLI::App& command, ScoreFlags& options) {
       "its points with intensity 1 where they are dynamic");
   add(command, "--same-within-m", options.same_within_m,
       "Largest distance of a point of the map that stands for one of the truth, m")
-      ->check(CLI::Range(1e-6, 1e3))
+      ->check(number_in(1e-6, 1e3))
       ->capture_default_str()
       ->group(kRareGroup);
   add(command, "--format FORMAT", options.format,

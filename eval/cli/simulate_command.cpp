@@ -50,7 +50,7 @@ CommandRun add_simulate(CLI::App& command) {
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
   add(command, "--seed", simulation.seed, "Seed of everything random")
       ->required()
-      ->check(CLI::NonNegativeNumber);
+      ->check(number_in(0.0, 18446744073709551615.0));
   add(command, "--out DIR", simulation.out, "Root of the data set to write")->required();
   const auto perturb = [options](const std::string& text) {
     options->simulation.perturb = parse_perturbation(text);

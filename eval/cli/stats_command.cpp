@@ -202,6 +202,7 @@ CommandRun add_stats(CLI::App& command) {
       "Rules of truth and range (default: by data set)");
   add(command, "--range MIN,MAX", options->range, "In metres, for protocols that limit it");
   add(command, "--top", options->top, "How many objects and false positives to list")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{1000000}))
       ->capture_default_str();
   add_threads_flag(command, options->threads);
   add_stale_flag(command, options->allow_stale);

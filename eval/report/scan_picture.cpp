@@ -119,8 +119,8 @@ class ScanPicture {
     draw_sensor();
     for (const MovingBox& box : options_.boxes) draw_moving_box(box);
     for (const Label& label : labels_) draw_label(label);
-    draw_box(kMargin, kMargin, options_.title);
     draw_legend();
+    draw_box(kMargin, kMargin, title());
     return std::move(picture_);
   }
 
@@ -205,6 +205,19 @@ class ScanPicture {
     if (!label || !box.velocity_m_s) return;
     add_label({static_cast<int>(label->x), static_cast<int>(label->y) - glyph_height(),
                fmt::format("{:.1f} m/s", box.velocity_m_s->norm()), palette_.text});
+  }
+
+  /// The lines of the title, cut to the picture; the last one says where there are more.
+  std::vector<std::string> title() const {
+    const auto room = static_cast<int>(options_.size_pixels);
+    const int letter = text_scale_ * Picture::kGlyphWidth;
+    std::vector<std::string> lines =
+        wrapped(options_.title, static_cast<std::size_t>((room - 4 * kMargin) / letter));
+    const auto most = static_cast<std::size_t>((room - 3 * kMargin) / line_height());
+    if (lines.size() <= most) return lines;
+    lines.resize(most);
+    lines.back() = "... and more";
+    return lines;
   }
 
   int glyph_height() const { return text_scale_ * Picture::kGlyphHeight; }

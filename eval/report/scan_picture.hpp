@@ -45,7 +45,7 @@ struct ScanPictureOptions {
   /// faces, counterclockwise from above. nullopt: from straight above, the sensor in the middle and
   /// facing up.
   std::optional<double> orbit_rad;
-  std::vector<std::string> title;  ///< lines in the upper left corner
+  std::vector<std::string> title;  ///< lines in the upper left corner, as far as they have room
   std::vector<MovingBox> boxes;    ///< drawn with their speeds
 };
 

@@ -29,9 +29,9 @@ bool is_answer_json(const std::filesystem::path& file) {
   }
 }
 
-/// Whether a file may be one that mosbench wrote in this format. Of text it cannot tell more than
-/// that it is text.
-bool is_written(const std::filesystem::path& file, Format format) {
+/// Whether a file may be one that mosbench wrote in this format. Of text and pictures it cannot
+/// tell more than that they are.
+bool may_be_written(const std::filesystem::path& file, Format format) {
   std::string head(4096, '\0');
   std::ifstream in(file, std::ios::binary);
   in.read(head.data(), static_cast<std::streamsize>(head.size()));
@@ -51,15 +51,31 @@ bool is_written(const std::filesystem::path& file, Format format) {
   }
 }
 
+/// Throws UsageError for names under which mosbench keeps what it reads again.
+void refuse_record(const std::filesystem::path& file) {
+  constexpr std::array<std::string_view, 7> kRecords = {
+      "result.json", "products.json", "simulated.json", "disturbed.txt",
+      "poses.txt",   "boxes.txt",     "boxes.json"};
+  const std::string name = file.filename();
+  if (!name.ends_with(".preset.json") && std::ranges::find(kRecords, name) == kRecords.end()) {
+    return;
+  }
+  throw UsageError(file.string() +
+                   ": is a name under which mosbench keeps what it reads again, expected another");
+}
+
 void refuse_foreign(const std::filesystem::path& file, Format written) {
   std::error_code ignored;
   const bool is_file = std::filesystem::is_regular_file(file, ignored);
   if (!is_file || std::filesystem::file_size(file, ignored) == 0) return;
   constexpr std::array<std::string_view, 3> kOnlyRead = {".yaml", ".yml", ".tum"};
   const bool is_read = std::ranges::find(kOnlyRead, file.extension().string()) != kOnlyRead.end();
-  if (!is_read && is_written(file, written)) return;
-  throw UsageError(fmt::format("{}: is there and no {} that mosbench wrote, expected another name",
-                               file.string(), format_names()[static_cast<std::size_t>(written)]));
+  if (!is_read && may_be_written(file, written)) return;
+  const bool is_known =
+      written == Format::kHtml || written == Format::kJunit || written == Format::kJson;
+  throw UsageError(fmt::format("{}: is there and no {}{}, expected another name", file.string(),
+                               format_names()[static_cast<std::size_t>(written)],
+                               is_known || is_read ? " that mosbench wrote" : ""));
 }
 
 }  // namespace
@@ -98,7 +114,9 @@ void check_output(const std::filesystem::path& file, std::optional<Format> writt
   if (!std::filesystem::is_directory(above, ignored)) {
     throw DataError(above, "is no folder", "a folder for " + file.filename().string());
   }
-  if (written) refuse_foreign(file, *written);
+  if (!written) return;
+  refuse_record(file);
+  refuse_foreign(file, *written);
 }
 
 void refuse_to_replace(const std::filesystem::path& file) {

@@ -17,7 +17,8 @@ void append_output(const std::filesystem::path& file, std::string_view bytes);
 
 /// Throws DataError where `file` can be no file to write, so that hours of work are not lost on it:
 /// it is a folder, or lies below what is none. Throws UsageError for a name of another kind of file
-/// than what is written, and where a file is there that mosbench did not write as this kind.
+/// than what is written or of a record that mosbench keeps, and where a file is there of another
+/// kind; for JSON, HTML and JUnit also where others wrote it, which text and pictures do not tell.
 void check_output(const std::filesystem::path& file, std::optional<Format> written = std::nullopt);
 
 /// Throws UsageError where `file` is a file that holds something: a writer asks this before its

@@ -99,7 +99,7 @@ std::string folders_text(const std::vector<ResultSet>& sets) {
 
 /// Names the file and what tells its run from others.
 std::string run_text(const Result& result) {
-  return fmt::format("{} ({}; {}; {})", result.file.string(), result.method, result.setting,
+  return fmt::format("{} ({}; {})", result.file.string(), method_words(result),
                      result.protocol->name);
 }
 
@@ -137,6 +137,10 @@ std::optional<double> most_resident_mib(const Result& result) {
   return most;
 }
 
+std::string method_words(const Result& result) {
+  return result.method + (result.setting.empty() ? "" : ", ") + result.setting;
+}
+
 std::optional<std::string> only_split(const Result& result) {
   const bool is_own = result.summary_split == std::string(result.protocol->default_split);
   return is_own ? std::nullopt : result.summary_split;
@@ -157,14 +161,18 @@ std::string simulation_of(const Result& result) {
 }
 
 std::optional<RunCost> run_cost(const Result& result) {
-  if (result.cost || !result.timing || result.scans.empty()) return result.cost;
   const bool is_program = find_method(result.kind) == nullptr;  // the user's
+  if (result.cost || !result.timing || result.scans.empty()) {
+    std::optional<RunCost> accepted = result.cost;
+    // Versions that told no machine took the time of programs by the wall.
+    if (accepted && is_program && !accepted->machine) accepted->core_ms_per_scan.reset();
+    return accepted;
+  }
   const auto& cpu_s = is_program ? result.timing->program_cpu_s : result.timing->core_s;
-  if (!cpu_s) return std::nullopt;
-  RunCost cost{.core_ms_per_scan = 1e3 * *cpu_s / static_cast<double>(result.scans.size()),
-               .calibration_ms = result.timing->calibration_ms,
+  RunCost cost{.calibration_ms = result.timing->calibration_ms,
                .most_resident_mib = most_resident_mib(result).value_or(0.0),
                .machine = result.from.machine};
+  if (cpu_s) cost.core_ms_per_scan = 1e3 * *cpu_s / static_cast<double>(result.scans.size());
   std::error_code error;
   for (fs::recursive_directory_iterator it(result.folder(), error), end; !error && it != end;
        it.increment(error)) {

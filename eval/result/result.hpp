@@ -120,8 +120,8 @@ struct Acceptance {
 
 /// What a run cost.
 struct RunCost {
-  double core_ms_per_scan = 0.0;         ///< CPU
-  std::optional<double> calibration_ms;  ///< of the machine
+  std::optional<double> core_ms_per_scan{};  ///< CPU; older versions did not take that of programs
+  std::optional<double> calibration_ms;      ///< of the machine
   double most_resident_mib = 0.0;
   std::uint64_t bytes_written = 0;          ///< beside result.json
   std::optional<Machine> machine{};         ///< older results do not tell
@@ -181,6 +181,9 @@ std::optional<double> most_resident_mib(const Result& result);
 /// it. Looks at the files of the run.
 std::optional<RunCost> run_cost(const Result& result);
 
+/// "HMM-MOS, paper-2024", or the method alone where no setting is known.
+std::string method_words(const Result& result);
+
 /// The split whose scans alone were scored where that is not the protocol's own.
 std::optional<std::string> only_split(const Result& result);
 
@@ -226,7 +229,7 @@ ResultSet load_result_set(const std::filesystem::path& path);
 std::filesystem::path folder_of_run(const std::filesystem::path& result_folder,
                                     const SequenceName& sequence);
 
-std::size_t missing_predictions(const ResultSet& set);
+std::size_t missing_predictions(std::span<const Result> sequences);
 
 /// "INCOMPLETE: ..." for so many scans.
 std::string incomplete_warning(std::size_t missing_predictions);
@@ -249,7 +252,8 @@ std::vector<std::string> doubts_of_labels(const Result& run, const Sequence& seq
 std::vector<std::string> notices_of(const Result& result);
 
 /// Returns the first file of the program that made a result that holds something else by now;
-/// nothing where it is gone, as on another machine.
+/// nothing where it is gone, as on another machine, and
+/// of an accepted result.
 std::optional<std::filesystem::path> changed_program_file(const Result& result);
 /// Throws DataError for results whose program has changed since, unless they are allowed: then
 /// their doubts say so.
@@ -261,11 +265,11 @@ struct Doubt {
 };
 /// Returns a line per sentence, after the names of all that it is about: "00, 01 and 3 more: ...".
 std::vector<std::string> told(const std::vector<Doubt>& doubts);
-/// The same with one line for sentences that differ in their numbers alone: the first of them.
+/// The same with one line for sentences that differ in their numbers alone, see `say_by_kind`.
 std::vector<std::string> told_by_kind(std::vector<Doubt> doubts);
 
 /// Which scans of the protocol are not counted: without predictions, of other splits.
-std::vector<std::string> shortfalls(const ResultSet& set);
+std::vector<std::string> shortfalls(std::span<const Result> sequences);
 /// What has to be said wherever numbers of the set are shown: shortfalls and doubts.
 std::vector<std::string> warnings(const ResultSet& set);
 
@@ -275,6 +279,9 @@ ResultSet only(ResultSet set, const std::vector<std::string>& names);
 
 /// What every format has to show beside numbers of the set.
 Standing standing_of(const ResultSet& set);
+/// The same beside those of each sequence alone, and last those of the set: looks at the files of
+/// each once.
+std::vector<Standing> standings_of(const ResultSet& set);
 /// The same of two sets, whose doubts begin with their names.
 Standing standing_of(const ResultSet& first, const char* first_name, const ResultSet& second,
                      const char* second_name);

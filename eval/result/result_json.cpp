@@ -94,7 +94,7 @@ void visit_members(Record& accepted, auto&& visit) {
 
 template <Is<RunCost> Record>
 void visit_members(Record& cost, auto&& visit) {
-  visit("core_ms_per_scan", cost.core_ms_per_scan, Member::kNeeded);
+  visit("core_ms_per_scan", cost.core_ms_per_scan, Member::kIfSet);
   visit("calibration_ms", cost.calibration_ms, Member::kIfSet);
   visit("most_resident_mib", cost.most_resident_mib, Member::kNeeded);
   visit("bytes_written", cost.bytes_written, Member::kNeeded);

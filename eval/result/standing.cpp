@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/doctor/doctor.hpp"
@@ -36,8 +35,8 @@ Standing with_origins(Standing standing, const std::vector<std::string>& origins
   return standing;
 }
 
-void add_origins(const ResultSet& set, std::vector<std::string>& origins) {
-  for (const Result& sequence : set.sequences) {
+void add_origins(std::span<const Result> sequences, std::vector<std::string>& origins) {
+  for (const Result& sequence : sequences) {
     if (sequence.from.simulated) origins.push_back(words_of(*sequence.from.simulated));
   }
 }
@@ -75,6 +74,7 @@ void add_doubts_of_truth(const Result& result, std::vector<std::string>& doubts)
 }
 
 std::string stale_doubt(const Result& result) {
+  if (!result.places) return "";
   if (const auto changed = changed_program_file(result)) {
     return fmt::format("STALE: {} has changed since", changed->string());
   }
@@ -102,9 +102,9 @@ void add_doubts_of_method(const Result& result, std::vector<std::string>& doubts
 
 }  // namespace
 
-std::size_t missing_predictions(const ResultSet& set) {
+std::size_t missing_predictions(std::span<const Result> sequences) {
   std::size_t missing = 0;
-  for (const Result& sequence : set.sequences) missing += sequence.missing_predictions();
+  for (const Result& sequence : sequences) missing += sequence.missing_predictions();
   return missing;
 }
 
@@ -207,6 +207,8 @@ DataMark mark_of(const Result& result) {
 }
 
 std::optional<fs::path> changed_program_file(const Result& result) {
+  // An accepted result is there to be compared with what its program becomes.
+  if (!result.places) return std::nullopt;
   for (const ProgramFile& file : result.from.program_files) {
     std::error_code gone;
     const std::uintmax_t bytes = fs::file_size(file.path, gone);
@@ -242,10 +244,9 @@ std::vector<std::string> told(const std::vector<Doubt>& doubts) {
 }
 
 std::vector<std::string> told_by_kind(std::vector<Doubt> doubts) {
-  std::map<std::string, std::string> first_of_kind;
-  for (Doubt& doubt : doubts) {
-    doubt.what = first_of_kind.emplace(without_digits(doubt.what), doubt.what).first->second;
-  }
+  std::vector<std::string*> sentences;
+  for (Doubt& doubt : doubts) sentences.push_back(&doubt.what);
+  say_by_kind(sentences);
   return told(doubts);
 }
 
@@ -266,11 +267,11 @@ std::vector<std::string> notices_of(const Result& result) {
   return texts;
 }
 
-std::vector<std::string> shortfalls(const ResultSet& set) {
+std::vector<std::string> shortfalls(std::span<const Result> sequences) {
   const auto with_split = std::ranges::find_if(
-      set.sequences, [](const Result& sequence) { return only_split(sequence).has_value(); });
-  return shortfalls(missing_predictions(set),
-                    with_split != set.sequences.end() ? only_split(*with_split) : std::nullopt);
+      sequences, [](const Result& sequence) { return only_split(sequence).has_value(); });
+  return shortfalls(missing_predictions(sequences),
+                    with_split != sequences.end() ? only_split(*with_split) : std::nullopt);
 }
 
 ResultSet only(ResultSet set, const std::vector<std::string>& names) {
@@ -288,23 +289,31 @@ ResultSet only(ResultSet set, const std::vector<std::string>& names) {
   return set;
 }
 
-std::vector<std::string> warnings(const ResultSet& set) {
-  std::vector<std::string> texts = shortfalls(set);
-  std::vector<Doubt> doubts;
+std::vector<std::string> warnings(const ResultSet& set) { return standing_of(set).doubts; }
+
+std::vector<Standing> standings_of(const ResultSet& set) {
+  const auto standing_with = [](std::span<const Result> sequences,
+                                const std::vector<Doubt>& doubts) {
+    std::vector<std::string> texts = shortfalls(sequences), origins;
+    std::ranges::move(told(doubts), std::back_inserter(texts));
+    add_origins(sequences, origins);
+    return with_origins({.doubts = std::move(texts)}, origins);
+  };
+  std::vector<Standing> standings;
+  std::vector<Doubt> all;
   for (const Result& sequence : set.sequences) {
-    for (std::string& doubt : doubts_of(sequence)) {
-      doubts.push_back({sequence.sequence.text(), std::move(doubt)});
+    std::vector<Doubt> own;
+    for (const std::string& doubt : doubts_of(sequence)) {
+      own.push_back({sequence.sequence.text(), doubt});
     }
+    standings.push_back(standing_with({&sequence, 1}, own));
+    std::ranges::move(own, std::back_inserter(all));
   }
-  std::ranges::move(told(doubts), std::back_inserter(texts));
-  return texts;
+  standings.push_back(standing_with(set.sequences, all));
+  return standings;
 }
 
-Standing standing_of(const ResultSet& set) {
-  std::vector<std::string> origins;
-  add_origins(set, origins);
-  return with_origins({.doubts = warnings(set)}, origins);
-}
+Standing standing_of(const ResultSet& set) { return standings_of(set).back(); }
 
 Standing standing_of(const ResultSet& first, const char* first_name, const ResultSet& second,
                      const char* second_name) {
@@ -312,8 +321,8 @@ Standing standing_of(const ResultSet& first, const char* first_name, const Resul
   for (std::string& doubt : warnings(first)) doubts.push_back({first_name, std::move(doubt)});
   for (std::string& doubt : warnings(second)) doubts.push_back({second_name, std::move(doubt)});
   std::vector<std::string> origins;
-  add_origins(first, origins);
-  add_origins(second, origins);
+  add_origins(first.sequences, origins);
+  add_origins(second.sequences, origins);
   return with_origins({.doubts = told(doubts)}, origins);
 }
 

@@ -30,7 +30,7 @@ std::vector<Cell> estimate_cells(const std::string& name, std::uint64_t scans,
 
 std::string headline(const ResultSet& set) {
   const Result& first = set.front();
-  return fmt::format("{}, {}; data set {}, protocol {}", first.method, first.setting, first.dataset,
+  return fmt::format("{}; data set {}, protocol {}", method_words(first), first.dataset,
                      first.protocol->name);
 }
 
@@ -108,7 +108,7 @@ ordered_json provenance_json(const ResultSet& set) {
   if (!first.from.compiler.empty()) json["code"]["compiler"] = first.from.compiler;
   if (first.predictions) json["predictions"] = to_json(*first.predictions);
   if (first.from.simulated) json["simulated"] = to_json(*first.from.simulated);
-  json["missing_predictions"] = missing_predictions(set);
+  json["missing_predictions"] = missing_predictions(set.sequences);
   if (const auto split = only_split(first)) json["only_split"] = *split;
   return json;
 }
@@ -281,15 +281,16 @@ std::vector<CheckResult> gate_checks(const GateResult& result) {
     told.message = percent_text(check.baseline) + " % before, " + now;
   }
   for (const CostCheck& cost : result.costs) {
+    const bool is_judged = cost.unjudged.empty();
+    if (!is_judged && !cost.limit) continue;
     CheckResult& told = checks.emplace_back(CheckResult{std::string(cost.kind->title), "", ""});
     if (cost.warns()) told.severity = CheckResult::Severity::kWarning;
     if (cost.passed() && !cost.warns()) continue;
-    told.title =
-        fmt::format("{} {}", cost.kind->title, cost.unjudged.empty() ? "grew" : "not judged");
+    told.title = fmt::format("{} {}", cost.kind->title, is_judged ? "grew" : "not judged");
     told.message =
         fmt::format("{:.1f} before, {:.1f} now: {} %, tolerance {} %", cost.baseline, cost.newer,
                     percent_text(cost.growth(), "{:+.1f}"), percent_text(cost.tolerance()));
-    if (!cost.unjudged.empty()) told.message = cost.unjudged;
+    if (!is_judged) told.message = cost.unjudged;
   }
   return checks;
 }
@@ -314,15 +315,17 @@ ordered_json to_json(const GateResult& result) {
   }
   json["costs"] = ordered_json::array();
   for (const CostCheck& cost : result.costs) {
-    json["costs"].push_back({{"name", std::string(cost.kind->key)},
-                             {"baseline", cost.baseline},
-                             {"new", cost.newer},
-                             {"change", cost.growth()},
-                             {"tolerance", cost.tolerance()},
-                             {"factor", cost.factor},
-                             {"decides", cost.limit.has_value()},
-                             {"unjudged", cost.unjudged},
-                             {"passed", cost.is_within()}});
+    const bool is_judged = cost.unjudged.empty();
+    json["costs"].push_back(
+        {{"name", std::string(cost.kind->key)},
+         {"baseline", cost.baseline},
+         {"new", cost.newer},
+         {"change", cost.growth()},
+         {"tolerance", cost.tolerance()},
+         {"factor", cost.factor},
+         {"decides", cost.limit.has_value()},
+         {"unjudged", cost.unjudged},
+         {"passed", is_judged ? ordered_json(cost.is_within()) : ordered_json()}});
   }
   return json;
 }

@@ -149,16 +149,20 @@ std::optional<double> memory_mb(const ResultSet& run) {
 LeaderboardRow row_of(const ResultSet& run, const std::vector<std::string>& sequences) {
   LeaderboardRow row;
   row.run = &run;
-  bool is_complete = missing_predictions(run) == 0;
+  std::vector<Standing> standings = standings_of(run);
+  bool is_complete = missing_predictions(run.sequences) == 0;
   for (const std::string& name : sequences) {
     const auto found = std::ranges::find(
         run.sequences, name, [](const Result& sequence) { return sequence.sequence.text(); });
     is_complete = is_complete && found != run.sequences.end();
     std::optional<Estimates>& estimates = row.sequences.emplace_back();
+    Standing& standing = row.sequence_standing.emplace_back();
     if (found == run.sequences.end()) continue;
+    standing = std::move(standings[static_cast<std::size_t>(found - run.sequences.begin())]);
     estimates = estimate({&*found, 1});
   }
   if (is_complete) row.all = estimate(run.sequences);
+  row.standing = std::move(standings.back());
   row.ms_per_scan = ms_per_scan(run);
   row.memory_mb = memory_mb(run);
   return row;
@@ -228,7 +232,7 @@ void add_settings_and_doubts(Leaderboard& board) {
   std::vector<Doubt> doubts;
   for (const LeaderboardRow& row : board.rows) {
     runs.push_back(row.run);
-    for (const std::string& warning : warnings(*row.run)) {
+    for (const std::string& warning : row.standing.doubts) {
       doubts.push_back({name_of(board, row), warning});
     }
   }

@@ -24,10 +24,12 @@ std::vector<DifferingSetting> differing_settings(const std::vector<const ResultS
 struct LeaderboardRow {
   const ResultSet* run = nullptr;
   std::vector<std::optional<Estimates>> sequences;  ///< one per sequence of the leaderboard
-  std::optional<Estimates> all;       ///< as the protocol aggregates; only where no scan is missing
-  std::optional<double> ms_per_scan;  ///< of the method, mean of all scans
-  std::optional<double> memory_mb;    ///< most that the process held, 1e6 bytes
-  bool is_on_front = false;           ///< no other run is as good and as fast, and better in one
+  std::optional<Estimates> all;  ///< as the protocol aggregates; only where no scan is missing
+  std::vector<Standing> sequence_standing;  ///< as many as sequences
+  Standing standing;                        ///< of all
+  std::optional<double> ms_per_scan;        ///< of the method, mean of all scans
+  std::optional<double> memory_mb;          ///< most that the process held, 1e6 bytes
+  bool is_on_front = false;            ///< no other run is as good and as fast, and better in one
   std::optional<Difference> to_first;  ///< of IoU, to that of the first row, on the same scans
 };
 

@@ -13,8 +13,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr const char* kAllSequences = "all";
-
 Cell estimate_cell(const std::optional<Estimates>& estimates, Metric metric) {
   return estimates ? Cell(spread_of((*estimates)[metric])) : Cell();
 }
@@ -53,8 +51,7 @@ std::vector<std::string> notes_of(const Leaderboard& board) {
   for (std::size_t r = 0; r < board.rows.size(); ++r) {
     const LeaderboardRow& row = board.rows[r];
     const Result& first = row.run->front();
-    notes.push_back(
-        fmt::format("{}: {}, {} ({})", r + 1, first.method, first.setting, first.file.string()));
+    notes.push_back(fmt::format("{}: {} ({})", r + 1, method_words(first), first.file.string()));
     if (!row.to_first || row.to_first->no_interval.empty()) continue;
     without_interval[row.to_first->no_interval].push_back(r + 1);
   }
@@ -64,15 +61,6 @@ std::vector<std::string> notes_of(const Leaderboard& board) {
   }
   notes.insert(notes.end(), board.remarks.begin(), board.remarks.end());
   return notes;
-}
-
-/// Of one sequence of a run, or of all.
-Standing standing_of_row(const LeaderboardRow& row, const std::string& sequence) {
-  ResultSet part = *row.run;
-  std::erase_if(part.sequences, [&](const Result& result) {
-    return sequence != kAllSequences && result.sequence.text() != sequence;
-  });
-  return standing_of(part);
 }
 
 /// What is told beside IoU.
@@ -116,7 +104,7 @@ Sheet sheet_of(const Leaderboard& board) {
     cells.push_back(or_missing(row.memory_mb));
     cells.emplace_back(row.is_on_front ? "*" : "");
     cells.push_back(to_first_cell(board, row));
-    sheet.row_standing.push_back(standing_of_row(row, kAllSequences));
+    sheet.row_standing.push_back(row.standing);
   }
   return sheet;
 }
@@ -145,9 +133,10 @@ Sheet records_of(const Leaderboard& board) {
     const LeaderboardRow& row = board.rows[r];
     const Result& first = row.run->front();
     const auto add = [&](const std::string& sequence, const std::optional<Estimates>& estimates,
-                         bool is_all) {
+                         const Standing& standing) {
+      const bool is_all = &standing == &row.standing;
       const Estimates metrics = estimates.value_or(Estimates{});
-      sheet.row_standing.push_back(standing_of_row(row, sequence));
+      sheet.row_standing.push_back(standing);
       const Difference to_first = is_all ? row.to_first.value_or(Difference{}) : Difference{};
       std::vector<Cell>& cells = sheet.rows.emplace_back();
       cells = {first.method, first.setting, first.file.string(), sequence};
@@ -160,9 +149,9 @@ Sheet records_of(const Leaderboard& board) {
         cells.push_back(setting_cell(setting.values[r]));
       }
     };
-    add(kAllSequences, row.all, true);
+    add("all", row.all, row.standing);
     for (std::size_t s = 0; s < board.sequences.size(); ++s) {
-      add(board.sequences[s], row.sequences[s], false);
+      add(board.sequences[s], row.sequences[s], row.sequence_standing[s]);
     }
   }
   return sheet;
@@ -187,7 +176,7 @@ ordered_json to_json(const Leaderboard& board, std::size_t r) {
   json["ms_per_scan"] = json_or_null(row.ms_per_scan);
   json["memory_mb"] = json_or_null(row.memory_mb);
   json["on_front"] = row.is_on_front;
-  json["standing"] = sentences(standing_of_row(row, kAllSequences));
+  json["standing"] = sentences(row.standing);
   json["to_first"] = row.to_first ? to_json(*row.to_first) : ordered_json(nullptr);
   return json;
 }
@@ -195,7 +184,7 @@ ordered_json to_json(const Leaderboard& board, std::size_t r) {
 }  // namespace
 
 Answer leaderboard_answer(const Leaderboard& board) {
-  Standing standing = standing_of(*board.rows.front().run);
+  Standing standing = board.rows.front().standing;
   standing.doubts = board.doubts;
   return {.standing = std::move(standing),
           .sheets = {sheet_of(board)},

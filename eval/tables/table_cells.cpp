@@ -55,7 +55,7 @@ std::vector<std::string> other_scans(const ResultSet& part, const PaperTable& ta
   }
   // An average that lacks a sequence is empty: which of its scans are there says nothing more.
   if (!missing_members(part, column).empty()) return reasons;
-  for (std::string& shortfall : shortfalls(part)) reasons.push_back(std::move(shortfall));
+  for (std::string& shortfall : shortfalls(part.sequences)) reasons.push_back(std::move(shortfall));
   for (const TableColumn& inner : table.columns) {
     const bool is_within = std::ranges::all_of(inner.sequences, [&](std::string_view name) {
       return contains(column, std::string(name));

@@ -213,6 +213,24 @@ TEST_F(Compare, WritesThatItCouldNotJudge) {
   }
 }
 
+TEST_F(Compare, RefusesLimitsThatAreNoNumbersBeforeItLooksAtRuns) {
+  for (const auto& [flag, value] : {std::pair{"--max-drop", "nan"},
+                                    {"--max-drop", "inf"},
+                                    {"--max-drop", ""},
+                                    {"--max-added-fp", "nan"},
+                                    {"--max-added-fp", "-3"},
+                                    {"--max-cost", ""},
+                                    {"--max-cost", "cpu=10,"},
+                                    {"--max-cost", "cpu=10,cpu=1000"},
+                                    {"--max-cost", "cpu=nan"}}) {
+    const cli::Answer answer = compare("nowhere", {flag, value});
+    EXPECT_EQ(answer.exit_code, 2) << flag << " " << value;
+    EXPECT_THAT(answer.err, AllOf(HasSubstr(flag), HasSubstr("expected"))) << value;
+    EXPECT_LT(answer.err.size(), 200U) << answer.err;
+  }
+  EXPECT_EQ(compare("out", {"--by", "scan", "--top", ""}).exit_code, 2);
+}
+
 TEST_F(Compare, WarnsThatRunsAreUnlikeWhereOnlyFailuresAreRead) {
   run_again("coarse", {"--set", "voxel_size_m=0.4"});
   const std::vector<std::string> words = {"--even-if", "--max-drop", "100"};

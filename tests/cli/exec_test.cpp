@@ -159,6 +159,21 @@ TEST_F(Exec, IsRefusedByTablesWhenItsFilesHaveChangedSince) {
   EXPECT_THAT(gone.out, HasSubstr("nobody can tell whether it is stale: " + weights.string()));
 }
 
+TEST_F(Exec, IsComparedWithABaselineThatIsNeverStale) {
+  const fs::path script = folder_.write("ours.sh", client() + "\n");
+  const std::string out = folder_ / "out", base = folder_ / "base";
+  const auto words = command("sh '" + script.string() + "'");
+  ASSERT_EQ(cli::run(words).exit_code, 0);
+  ASSERT_EQ(cli::run({"compare", base, out, "--accept"}).exit_code, 0);
+  write_file_atomic(script, read_file(script) + "\n");
+  ASSERT_EQ(cli::run(words).exit_code, 0);
+  const cli::Answer changed = cli::run({"compare", base, out});
+  EXPECT_EQ(changed.exit_code, 0) << changed.err;
+  EXPECT_THAT(changed.out, Not(HasSubstr("STALE")));
+  fs::rename(script, folder_ / "elsewhere.sh");
+  EXPECT_THAT(cli::run({"stats", base}).out, Not(HasSubstr("nobody can tell")));
+}
+
 TEST_F(Exec, IsStaleWhereItsLabelsAreScored) {
   const fs::path script = folder_.write("ours.sh", client() + "\n");
   const std::string out = folder_ / "out", room = folder_ / "room", scores = folder_ / "scores";

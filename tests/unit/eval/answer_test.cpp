@@ -97,6 +97,19 @@ TEST(Answer, LeadsByADaggerFromItsLatexToWhatItIsNot) {
                            HasSubstr("% above\n"), HasSubstr("% below\n")));
 }
 
+TEST(Answer, LeadsFromEachRowOfItsLatexToEachOfItsDoubts) {
+  Answer answer{.standing = Standing{}, .sheets = {{.columns = {{"x"}}}}};
+  Sheet& sheet = answer.sheets[0];
+  for (std::size_t row = 0; row < 28; ++row) {
+    sheet.rows.push_back({std::uint64_t{1}});
+    sheet.row_standing.push_back({.doubts = {"odd" + std::string(row + 1, '!')}});
+  }
+  sheet.row_standing[27].doubts.push_back("odd!");
+  const std::string latex = render(answer, Format::kLatex);
+  EXPECT_THAT(latex, HasSubstr("\n1$^{z}$ \\\\\n1$^{aa}$ \\\\\n1$^{a,ab}$ \\\\\n"));
+  EXPECT_THAT(latex, HasSubstr("{$^{ab}$ odd" + std::string(28, '!') + "}"));
+}
+
 TEST(Answer, SaysInMarkdownAndHtmlWhatItIsNot) {
   EXPECT_THAT(render(answer_of_all(), Format::kMarkdown),
               AllOf(HasSubstr("### all\n\nabove\n\n**SIMULATED data"), HasSubstr("\n|---|--:|"),

@@ -89,6 +89,7 @@ TEST(Gate, FailsWhereNothingMovesAndManyPointsAreCalledMoving) {
 ResultSet run_that_cost(const RunCost& cost) {
   Result result;
   result.sequence = SequenceName("street", "street");
+  result.kind = "hmm-mos";
   result.scans.resize(4);
   result.cost = cost;
   return {"run", {result}};
@@ -162,6 +163,27 @@ TEST(Gate, JudgesNoCpuOfShortRunsAndNoBytesOfOtherFiles) {
   EXPECT_FALSE(check_costs(run_that_cost(before), run_that_cost(after), limits)[0].passed());
 }
 
+TEST(Gate, JudgesNoCpuOfAProgramThatAnOlderMosbenchMeasured) {
+  const Machine machine{"a", 8, 1024.0, "Linux"};
+  ResultSet before = run_that_cost({4000.0, 10.0, 100.0, 1000});
+  ResultSet after = run_that_cost({8000.0, 10.0, 100.0, 2000, machine});
+  for (ResultSet* run : {&before, &after}) run->sequences[0].kind = "exec";
+  const GateResult result{GateRule::kMaxDrop, {}, check_costs(before, after, {})};
+  ASSERT_EQ(result.costs.size(), 3U);
+  EXPECT_EQ(result.costs[0].unjudged, "measured by an older mosbench");
+  EXPECT_FALSE(result.costs[2].is_within());
+  const auto json = to_json(result).at("costs");
+  EXPECT_EQ(json.at(0).at("passed"), nullptr);
+  EXPECT_EQ(json.at(2).at("passed"), false);
+  EXPECT_THAT(render({.sheets = {cost_sheet(result)}}, Format::kText),
+              testing::ContainsRegex("CPU ms per scan .* not judged"));
+  EXPECT_EQ(gate_checks(result).size(), 2U) << "nobody asked for the CPU";
+  after.sequences[0].cost->core_ms_per_scan.reset();  // of a run that did not take it
+  before.sequences[0].cost->machine = machine;
+  EXPECT_EQ(check_costs(before, after, {}).at(0).unjudged, "measured by an older mosbench");
+  EXPECT_EQ(check_costs(before, after, {}).at(1).unjudged, "");
+}
+
 TEST(Gate, ComparesCpuPerScanAloneWhereScansDiffer) {
   const ResultSet all = run_that_cost({40.0, 10.0, 100.0, 1000});
   ResultSet part = run_that_cost({40.0, 10.0, 50.0, 500});
@@ -181,7 +203,8 @@ TEST(Gate, ComparesNoCpuWithoutACalibrationAndNoCostThatIsNotKnown) {
   ResultSet untimed = known;
   untimed.sequences[0].cost.reset();
   EXPECT_TRUE(check_costs(untimed, known, {}).empty());
-  for (const char* wrong : {"cpu", "cpu=", "cpu=x", "cpu=-1", "gpu=3"}) {
+  for (const char* wrong :
+       {"", "cpu=1,", "cpu", "cpu=", "cpu=x", "cpu=nan", "cpu=-1", "gpu=3", "cpu=10,cpu=1000"}) {
     EXPECT_THROW(cost_limits("--max-cost", wrong), UsageError) << wrong;
   }
 }

@@ -263,8 +263,7 @@ TEST(Leaderboard, TellsOfEachRowWhatIsDoubtfulAboutIt) {
                        "\nb,[^\n]*,all,[^\n]*,00: 7 scans are odd; 01: 9 scans are odd\n"));
   EXPECT_THAT(csv, testing::ContainsRegex("\nb,[^\n]*,00,[^\n]*,00: 7 scans are odd\n"));
   EXPECT_THAT(latex, testing::ContainsRegex("\n1 & a & [^\n$]*\n2 & b & [^\n]*\\$\\^\\{a\\}\\$"));
-  EXPECT_THAT(latex, HasSubstr("{$^{a}$ 00: 7 scans are odd}"));
-  EXPECT_THAT(latex, testing::Not(HasSubstr("9 scans are odd"))) << "one line of a kind";
+  EXPECT_THAT(latex, HasSubstr("{$^{a}$ ...: ... scans are odd}")) << "one line of a kind";
 }
 
 TEST(Leaderboard, IsPrintedInEveryFormat) {
@@ -275,7 +274,10 @@ TEST(Leaderboard, IsPrintedInEveryFormat) {
   EXPECT_NEAR(json.at("rows").at(1).at("to_first").at("value").get<double>(), -0.05, 1e-9);
   EXPECT_TRUE(json.at("rows").at(0).at("on_front").get<bool>());
   const Answer answer = leaderboard_answer(board);
-  EXPECT_THAT(render(answer, Format::kLatex), HasSubstr("1 & a\\_b & 85.0"));
+  EXPECT_THAT(render(answer, Format::kLatex),
+              testing::AllOf(HasSubstr("1 & a\\_b & 85.0"),
+                             testing::ContainsRegex("multicolumn[^\n]*, protocol ")));
+  EXPECT_THAT(render(answer, Format::kText), HasSubstr("\n1: a_b (00/result.json)\n"));
   const std::string markdown = render(answer, Format::kMarkdown);
   EXPECT_THAT(markdown, HasSubstr("\n|  | method | IoU % | 95 % | 00 % | 01 % |"));
   EXPECT_THAT(markdown, HasSubstr("|--:|---|--:|--:|"));

@@ -112,6 +112,19 @@ TEST(LineCharts, HaveTheirMarksBelow) {
   EXPECT_GT(inked(324, 348), 100U);
 }
 
+TEST(LineCharts, BreakMarksThatAreWiderThanTheyAre) {
+  const std::array charts = {LineChart{.title = "t", .x_label = "x", .y_label = "y", .curves = {}}};
+  const std::array<std::string, 1> marks = {"28 letters are in each line, and these go on below"};
+  EXPECT_EQ(line_charts(charts, 300, marks).height(), 300U + 2 * (Picture::kGlyphHeight + 4));
+}
+
+TEST(Wrapped, BreaksAtBlanksAndLongWordsAnywhere) {
+  const std::array<std::string, 3> lines = {"two words", "", "/path/of/many letters"};
+  EXPECT_THAT(wrapped(lines, 6),
+              testing::ElementsAre("two", "words", "", "/path/", "of/man", "y", "letter", "s"));
+  EXPECT_THAT(wrapped(lines, 100), testing::ElementsAreArray(lines));
+}
+
 TEST(Picture, WritesLettersThatDifferAndNothingForABlank) {
   const auto lit = [](const char* text) {
     Picture picture(Picture::kGlyphWidth, Picture::kGlyphHeight, kBlack);
@@ -262,6 +275,21 @@ TEST(ScanPicture, HasLargerTextWhereItIsLarger) {
   const std::size_t once = pixels_of(scan_picture({}, options), palette(false).text);
   options.size_pixels = 1600;
   EXPECT_GT(pixels_of(scan_picture({}, options), palette(false).text), 3 * once);
+}
+
+TEST(ScanPicture, WritesLongLinesOfItsTitleToTheirEndOrSaysThatThereIsMore) {
+  const auto drawn = [](std::size_t size_pixels, const std::string& title) {
+    ScanPictureOptions options;
+    options.size_pixels = size_pixels;
+    options.title = {title};
+    return scan_picture({}, options).png();
+  };
+  const std::string doubt(20, 'x'), longer = doubt + std::string(400, 'y');
+  for (const std::size_t size : {200U, 1000U}) {
+    EXPECT_NE(drawn(size, doubt + " scan 1"), drawn(size, doubt + " scan 2")) << size;
+  }
+  EXPECT_NE(drawn(1000, longer + "1"), drawn(1000, longer + "2"));
+  EXPECT_EQ(drawn(200, longer + "1"), drawn(200, longer + "2"));
 }
 
 TEST(ScanPicture, PutsSpeedsThatWouldOverlapAboveOneAnother) {
