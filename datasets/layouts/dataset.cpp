@@ -376,7 +376,6 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
         sequence->add_doubt(std::move(doubt));
       }
     }
-    dataset.sequences.push_back(with_point_times(std::move(sequence), reading));
     dataset.sequences.push_back(std::move(sequence));
   }
   dataset.splits = layout.splits != nullptr
