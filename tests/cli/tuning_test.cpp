@@ -98,6 +98,13 @@ TEST_F(Tuning, WritesAPresetThatRunTakes) {
     EXPECT_THAT(answer.out, expected) << data;
   }
   // What the study did not write stays.
+  folder_.write("user.json", "{}");
+  fs::remove_all(folder_ / "out/cells");
+  const cli::Answer kept =
+      run({"run", path("s.yaml"), "--out", path("out"), "-o", path("user.json")});
+  EXPECT_EQ(kept.exit_code, 2);
+  EXPECT_THAT(kept.err, HasSubstr("user.json: is there and no json that mosbench wrote"));
+  EXPECT_FALSE(is_there(folder_ / "out/cells")) << "found before any work";
   write_file_atomic(preset, "my notes");
   fs::remove_all(folder_ / "out/cells");
   const cli::Answer foreign = run({"run", path("s.yaml"), "--out", path("out"), "--threads", "1"});
