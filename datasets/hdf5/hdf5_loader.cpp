@@ -26,21 +26,21 @@ std::filesystem::path own_folder() {
 /// Loads a module (a shared library beside the program, of the same build) when it is first needed:
 /// with all its libraries libhdf5 would cost every start of the program milliseconds. Looks in
 /// four folders: beside this code, where a wheel has it, relative to the installed program, in the
-/// installation prefix, and in the build tree.
+/// build tree, and in the installation prefix.
 ModuleFunction load_function(const char* module, const char* function) {
   std::error_code ignored;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored);
   ModuleFunction loaded;
   for (const std::filesystem::path& folder :
        {own_folder(), program.parent_path() / MOSBENCH_MODULES_FROM_PROGRAM,
-        std::filesystem::path(MOSBENCH_MODULES_INSTALLED),
-        std::filesystem::path(MOSBENCH_MODULES_BUILT)}) {
+        std::filesystem::path(MOSBENCH_MODULES_BUILT),
+        std::filesystem::path(MOSBENCH_MODULES_INSTALLED)}) {
     const auto file = folder / module;
     if (!file.is_absolute() || !std::filesystem::exists(file, ignored)) continue;
     void* opened = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     loaded.function = opened == nullptr ? nullptr : dlsym(opened, function);
     if (loaded.function != nullptr) return loaded;
-    loaded.error = dlerror();
+    loaded.error = opened == nullptr ? dlerror() : file.string() + " is of another mosbench";
   }
   return loaded;
 }

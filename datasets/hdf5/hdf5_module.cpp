@@ -372,9 +372,9 @@ constexpr Hdf5Functions kFunctions = {list, read, create};
 }  // namespace
 }  // namespace mosbench
 
-// dlsym finds the C name; both sides are of one build, so C++ types may pass.
+// dlsym finds the C name; both sides have the same types by its number, so C++ types may pass.
 extern "C" __attribute__((visibility("default"))) const mosbench::Hdf5Functions*
-mosbench_hdf5_functions() {
+mosbench_hdf5_functions_2() {
   // At the end of the process the library would close what it could not write, and crash.
   H5dont_atexit();
   return &mosbench::kFunctions;

@@ -59,8 +59,9 @@ struct Hdf5Functions {
 };
 
 inline constexpr const char* kHdf5Module = "mosbench_hdf5.so";
-/// Of a function that returns `const Hdf5Functions*`.
-inline constexpr const char* kHdf5ModuleFunction = "mosbench_hdf5_functions";
+/// Of a function that returns `const Hdf5Functions*`. Its number counts up with each change of the
+/// types above: a module of another build would be called with other ones.
+inline constexpr const char* kHdf5ModuleFunction = "mosbench_hdf5_functions_2";
 
 /// Returns the module's functions, loading it first. Throws DataError naming `file` when this build
 /// has none.

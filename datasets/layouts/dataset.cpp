@@ -268,6 +268,7 @@ void check_point_times(const Reading& asked, const Layout& layout, const Sequenc
 DataMark mark_of(const Sequence& sequence, const SequenceFolder& folder, const Layout& layout,
                  const std::filesystem::path& root) {
   const Recording& recording = sequence.recording();
+  if (recording.is_marked_inside) return recording.mark;
   DataMark mark = recording.mark.is_set() ? recording.mark : mark_in(folder.folder);
   if (!mark.is_set() && !recording.scans.empty() && recording.scans.front().file) {
     mark = mark_of_file(*recording.scans.front().file, layout.scan_folders);

@@ -9,6 +9,8 @@
 
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
+#include "eval/answer/render.hpp"
+#include "eval/result/output.hpp"
 #include "eval/result/reading_json.hpp"
 
 namespace mosbench {
@@ -266,6 +268,13 @@ std::string given_words(const CLI::App& command,
     words += ' ' + shell_word(fmt::format("{}", fmt::join(option->results(), ",")));
   }
   return words;
+}
+
+void check_answer_file(const CLI::App& command, const std::filesystem::path& file) {
+  Format format = format_of_name(file).value_or(Format::kText);
+  if (command.count("--as") > 0) format = format_named(command["--as"]->results().front());
+  if (command.count("--json") > 0) format = Format::kJson;
+  check_output(file, format);
 }
 
 Reading reading_of(std::vector<std::string> flags) {

@@ -80,6 +80,10 @@ std::string flag_words(std::string_view name, std::string_view value);
 std::string given_words(const CLI::App& command,
                         const std::function<bool(const CLI::Option&)>& wanted);
 
+/// Throws as `check_output` for the file that a command's answer goes to, by the format that it was
+/// asked for: before its work.
+void check_answer_file(const CLI::App& command, const std::filesystem::path& file);
+
 /// Returns what flags of the group Reading say, without a command. Throws UsageError.
 Reading reading_of(std::vector<std::string> flags);
 

@@ -43,12 +43,12 @@ void keep_comparable_cells(std::vector<ResultSet>& runs) {
                    counted(left_out, "run")));
 }
 
-Answer rank(RankFlags options) {
+Answer rank(RankFlags options, const CLI::App& command) {
+  check_answer_file(command, options.job.output);
   if (options.runs.size() == 1 && is_job(options.runs.front())) {
     options.job.file = options.runs.front();
     return rank_job(options.job);
   }
-  check_output(options.job.output);
   std::vector<ResultSet> runs;
   for (const std::string& path : options.runs) {
     for (ResultSet& run : load_runs_of_folders(path)) runs.push_back(std::move(run));
@@ -77,7 +77,7 @@ CommandRun add_rank(CLI::App& command) {
   add(command, "--out DIR", options->job.out,
       "Folder of the results of JOB.yaml (default: results/runs/<its name>)");
   add(command, "-o FILE", options->job.output, "File of the table; - is stdout");
-  return [options] { return rank(*options); };
+  return [options, &command] { return rank(*options, command); };
 }
 
 }  // namespace mosbench

@@ -67,6 +67,7 @@ Answer run(RunFlags flags, const CLI::App& command) {
   if (input == Input::kJob) {
     flags.job.file = flags.words.input;
     flags.job.out = flags.place.out;
+    check_answer_file(command, flags.job.output);
     if (command.count("--threads") > 0) flags.job.threads = flags.place.threads;
     return run_job(flags.job);
   }

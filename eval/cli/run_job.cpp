@@ -10,7 +10,6 @@
 #include "eval/cli/run_kinds.hpp"
 #include "eval/engine/study_plan.hpp"
 #include "eval/engine/study_run.hpp"
-#include "eval/result/output.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/study/study_table.hpp"
 
@@ -131,7 +130,6 @@ bool is_job(const std::filesystem::path& input) {
 }
 
 Answer run_job(const JobFlags& flags) {
-  check_output(flags.output);
   const Study study = read_study(flags.file);
   const StudyPlan plan = plan_study(study, out_of(flags), flags.keys);
   if (flags.dry_run) return plan_answer(plan);
@@ -139,7 +137,6 @@ Answer run_job(const JobFlags& flags) {
 }
 
 Answer rank_job(const JobFlags& flags) {
-  check_output(flags.output);
   const Study study = read_study(flags.file);
   const std::vector<ProgramFile> known = recorded_program_files(study, out_of(flags));
   const StudyPlan plan = plan_study(study, out_of(flags), flags.keys, &known);

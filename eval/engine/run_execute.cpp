@@ -16,6 +16,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/exec/child_process.hpp"
+#include "eval/job/study_drives.hpp"
 #include "eval/job/tuned_preset.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/result.hpp"
@@ -94,7 +95,8 @@ Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran
   result.from.machine = this_machine();
   result.from.simulated = sequence.simulated();
   if (plan.job.segment.tuned) {
-    std::string doubt = tuning_doubt(*plan.job.segment.tuned, result);
+    std::string doubt =
+        tuning_doubt(*plan.job.segment.tuned, result, scan_hashes(plan.job.data, sequence.name()));
     if (!doubt.empty()) result.doubts.push_back(std::move(doubt));
   }
   if (plan.odometry) result.doubtful_poses = doubtful_poses(sequence, found);

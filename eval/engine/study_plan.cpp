@@ -248,9 +248,10 @@ std::vector<ProgramFile> recorded_program_files(const Study& study, const fs::pa
 }
 
 void refresh(StudyPlan& plan) {
+  const std::vector<ProgramFile> none;  // so that a file that is gone has changed
   look_up_all(plan, true);
   for (const StudyMethod& method : plan.study->methods) {
-    const std::string now = hash_of_program(files_of_program(*method.segment.method));
+    const std::string now = hash_of_program(files_of_program(*method.segment.method, &none));
     const auto is_stale = [&](const PlannedCell& planned) {
       return planned.cell.method == &method && planned.cell.program != now;
     };

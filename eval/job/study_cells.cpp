@@ -40,15 +40,27 @@ std::string content_of(const Sequence& sequence) {
   return hash_of_text(listing);
 }
 
+struct KnownSequence {
+  DatasetKind kind;
+  std::string name;
+  ordered_json input = {};  ///< what its key says of it
+  std::string drive = {};   ///< see StudyCell, as the rest
+  std::string reading = {};
+  std::set<std::uint64_t> scans = {};
+};
+
 /// What a cell has to say of a sequence on disk. One that cannot be opened says why.
-ordered_json sequence_json(const Data& data, const std::string& name, std::string& drive) {
+ordered_json sequence_json(const Data& data, KnownSequence& known) {
+  const std::string& name = known.name;
   try {
     Reading reading = data.reading;
     const bool refines = std::exchange(reading.refine_poses, false);  // which reads all scans
     const Dataset dataset = open_dataset(data.path, {data.kind, {name}, reading});
     if (reading.pose_file() != nullptr) reading.poses = OwnPoses{};
     reading.refine_poses = refines;
-    drive = drive_of(dataset.sequences.front()->simulated());
+    const auto& simulated = dataset.sequences.front()->simulated();
+    known.drive = drive_of(simulated);
+    if (simulated) known.reading = simulated->perturb.value_or("") + told_json(reading).dump();
     return {{"dataset", to_string(dataset.kind)},
             {"content", content_of(*dataset.sequences.front())},
             {"reading", told_json(reading)}};
@@ -57,22 +69,14 @@ ordered_json sequence_json(const Data& data, const std::string& name, std::strin
   }
 }
 
-struct KnownSequence {
-  DatasetKind kind;
-  std::string name;
-  ordered_json input;  ///< what its key says of it
-  std::string drive;   ///< see StudyCell, as `scans`
-  std::set<std::uint64_t> scans = {};
-};
-
 /// Throws UsageError for a sequence that the simulation does not write.
 std::vector<KnownSequence> simulated_sequences(const StudyData& data) {
   const Simulation& simulation = *data.data.simulation;
   const std::vector<std::string> written =
       simulated_names(simulation.layout, load_scene(simulation.scene));
   const std::vector<std::string>& wanted = data.data.sequences;
-  const ordered_json json = {{"simulated", simulation_json(simulation)},
-                             {"reading", told_json(data.data.reading)}};
+  ordered_json json = {{"simulated", simulation_json(simulation)},
+                       {"reading", told_json(data.data.reading)}};
   const std::string drive =
       simulated_drive(fingerprint_of(load_scene(simulation.scene)), simulation.seed);
   std::vector<KnownSequence> sequences;
@@ -81,7 +85,7 @@ std::vector<KnownSequence> simulated_sequences(const StudyData& data) {
       throw UsageError(fmt::format("{}: simulates no sequence {}, expected {}", data.name,
                                    mosbench::quoted(name), fmt::join(written, ", ")));
     }
-    sequences.push_back({simulation.layout, name, json, drive});
+    sequences.push_back({simulation.layout, name, json, drive, json["reading"].dump()});
   }
   return sequences;
 }
@@ -93,8 +97,8 @@ std::vector<KnownSequence> sequences_of(const StudyData& data) {
   const OpenOptions options{data.data.kind, data.data.sequences, data.data.reading};
   try {
     for (const SequenceFolder& folder : find_sequences(data.data.path, options, kind)) {
-      KnownSequence& sequence = sequences.emplace_back(KnownSequence{*kind, folder.name, {}, ""});
-      sequence.input = sequence_json(data.data, folder.name, sequence.drive);
+      KnownSequence& sequence = sequences.emplace_back(KnownSequence{*kind, folder.name});
+      sequence.input = sequence_json(data.data, sequence);
     }
   } catch (const UsageError& error) {
     throw UsageError(fmt::format("{}: {}", data.name, error.what()));
@@ -117,6 +121,7 @@ class CellLister {
                       .kind = sequence.kind,
                       .sequence = sequence.name,
                       .drive = sequence.drive,
+                      .reading = sequence.reading,
                       .scans = sequence.scans,
                       .method = &method,
                       .program = program_of_.at(&method),
@@ -293,8 +298,8 @@ std::string StudyCell::sequence_label() const { return fmt::format("{} {}", data
 
 std::string StudyCell::group_label() const {
   if (drive.empty()) return fmt::format("{} {}", data->group, sequence);
-  return fmt::format("{} {} {}", scene_of(drive), to_string(kind),
-                     simulates_several(kind) ? sequence : "");
+  return fmt::format("{} {} {} {}", scene_of(drive), to_string(kind),
+                     simulates_several(kind) ? sequence : "", reading);
 }
 
 std::string StudyCell::title() const {

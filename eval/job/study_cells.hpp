@@ -16,6 +16,7 @@ struct StudyCell {
   DatasetKind kind = DatasetKind::kRecording;  ///< of the data
   std::string sequence;
   std::string drive = {};              ///< see `drive_of`; empty for recorded data
+  std::string reading = {};            ///< how simulated data were disturbed, and are read
   std::set<std::uint64_t> scans = {};  ///< see `scan_hashes`; empty where nobody asks
   const StudyMethod* method = nullptr;
   std::string program = {};         ///< hash of the files that its command names
@@ -32,7 +33,8 @@ struct StudyCell {
   /// Returns "street-1 08".
   std::string sequence_label() const;
   /// Returns "street 08", of simulated data their scene, layout, and sequence where there are
-  /// several: seeds of one scene are no more than one sequence to a mean.
+  /// several, and how they are disturbed and read: seeds of one scene are no more than one sequence
+  /// to a mean.
   std::string group_label() const;
   /// Returns "street 08, hmm-mos, pose_noise_m=0.05, seed 2".
   std::string title() const;

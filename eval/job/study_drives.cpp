@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -29,13 +30,29 @@ std::optional<std::uint64_t> hash_of_points(const std::vector<Point>& points) {
   return sum != 0 ? std::optional(sum) : std::nullopt;
 }
 
+/// How many points each scan has, with returns that miss where the layout keeps them.
+std::vector<std::uint64_t> point_counts(const Sequence& sequence) {
+  std::vector<std::uint64_t> counts;
+  for (const ScanEntry& scan : sequence.recording().scans) counts.push_back(scan.points);
+  return counts;
+}
+
+/// Hashes how many points scans in a row have, which no two drives share by chance; nothing where
+/// two of them have as many, as of a sensor whose scans all do.
+std::optional<std::uint64_t> hash_of_counts(std::span<const std::uint64_t> counts) {
+  constexpr std::size_t kInRow = 8;
+  if (counts.size() < kInRow) return std::nullopt;
+  counts = counts.first(kInRow);
+  if (std::set(counts.begin(), counts.end()).size() < kInRow) return std::nullopt;
+  return XXH3_64bits(counts.data(), counts.size_bytes());
+}
+
 /// Up to so many scans; those of as many points in their order.
-std::vector<std::size_t> chosen_scans(const Sequence& sequence) {
+std::vector<std::size_t> chosen_scans(const std::vector<std::uint64_t>& counts) {
   constexpr std::size_t kRead = 16;
   std::vector<std::pair<std::uint64_t, std::size_t>> order;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
-    const std::uint64_t points = sequence.point_count(k);
-    order.emplace_back(XXH3_64bits(&points, sizeof(points)), k);
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    order.emplace_back(XXH3_64bits(&counts[k], sizeof(counts[k])), k);
   }
   std::ranges::sort(order);
   order.resize(std::min(order.size(), kRead));
@@ -44,8 +61,12 @@ std::vector<std::size_t> chosen_scans(const Sequence& sequence) {
   return scans;
 }
 
-/// Whether two parts of a drive share no scan.
+/// Whether two parts of the same data share no scan. Numbers of scans of a copy say nothing.
 bool are_apart(const StudyCell& first, const StudyCell& second) {
+  const bool are_simulated = first.job.data.simulation && second.job.data.simulation;
+  const bool are_same =
+      first.job.data.path == second.job.data.path && first.sequence == second.sequence;
+  if (!are_simulated && !are_same) return false;
   const ScanRange one = first.job.data.reading.scans.value_or(ScanRange{});
   const ScanRange other = second.job.data.reading.scans.value_or(ScanRange{});
   return (one.to && *one.to <= other.from) || (other.to && *other.to <= one.from);
@@ -59,10 +80,9 @@ bool are_siblings(const StudyCell& first, const StudyCell& second) {
 
 /// Whether two cells may read the same scans.
 bool may_share_scans(const StudyCell& first, const StudyCell& second) {
-  const bool same_scan = std::ranges::any_of(
-      first.scans, [&](std::uint64_t scan) { return second.scans.contains(scan); });
   const bool same_simulation = !first.drive.empty() && first.drive == second.drive;
-  const bool same = same_scan || (same_simulation && !are_siblings(first, second));
+  const bool same =
+      share_a_scan(first.scans, second.scans) || (same_simulation && !are_siblings(first, second));
   return same && !are_apart(first, second);
 }
 
@@ -85,13 +105,23 @@ std::set<std::uint64_t> scan_hashes(const Data& data, const std::string& sequenc
   reading.refine_poses = reading.hdl64_correction = false;
   const Dataset dataset = open_dataset(data.path, {data.kind, {sequence}, reading});
   const Sequence& opened = *dataset.sequences.front();
+  const std::vector<std::uint64_t> counts = point_counts(opened);
   std::set<std::uint64_t> hashes;
   Frame frame;
-  for (const std::size_t k : chosen_scans(opened)) {
-    opened.read(k, frame);
+  for (const std::size_t k : chosen_scans(counts)) {
+    try {
+      opened.read(k, frame);
+    } catch (const DataError&) {  // which fails where it is needed
+      continue;
+    }
     if (const auto hash = hash_of_points(frame.points)) hashes.insert(*hash);
+    if (const auto hash = hash_of_counts(std::span(counts).subspan(k))) hashes.insert(*hash);
   }
   return hashes;
+}
+
+bool share_a_scan(const std::set<std::uint64_t>& first, const std::set<std::uint64_t>& second) {
+  return std::ranges::any_of(first, [&](std::uint64_t scan) { return second.contains(scan); });
 }
 
 bool are_seeds_of_one_scene(const StudyCell& first, const StudyCell& second) {

@@ -21,11 +21,16 @@ std::string drive_of(const std::optional<SimulatedOrigin>& origin);
 /// Returns "scene 5f3a..." of it; empty for recorded data.
 std::string scene_of(const std::string& drive);
 
-/// Returns hashes of the points of up to 16 scans of a sequence on disk. Scans are chosen by how
+/// Returns hashes of up to 16 scans of a sequence on disk: of where their points are, and of how
+/// many points they and the next ones have, which noise does not change. Scans are chosen by how
 /// many points they have, so that a copy in another layout, or with some scans less, gives the same
-/// ones. It cannot know a copy whose points were changed, nor one from the middle of a drive whose
-/// scans have all as many points. Throws DataError.
+/// ones. It cannot know a copy with other numbers of points, as of a layout that leaves out returns
+/// that miss, where no scan is chosen of both; nor one from the middle of a drive whose scans have
+/// all as many points. Throws DataError.
 std::set<std::uint64_t> scan_hashes(const Data& data, const std::string& sequence);
+
+/// Returns whether two drives have a hash in common: they are the same then.
+bool share_a_scan(const std::set<std::uint64_t>& first, const std::set<std::uint64_t>& second);
 
 /// Returns whether two cells are of one scene, with other seeds.
 bool are_seeds_of_one_scene(const StudyCell& first, const StudyCell& second);

@@ -22,7 +22,8 @@ ordered_json to_json(const TunedSequence& sequence) {
           {"dataset", sequence.dataset},
           {"sequence", sequence.sequence},
           {"simulation", sequence.simulation},
-          {"fingerprint", sequence.fingerprint}};
+          {"fingerprint", sequence.fingerprint},
+          {"scans", sequence.scans}};
 }
 
 TunedPreset parsed(const ordered_json& json) {
@@ -44,7 +45,8 @@ TunedPreset parsed(const ordered_json& json) {
   json.at("study").get_to(preset.study);
   for (const ordered_json& one : json.at("tuned_on")) {
     preset.tuned_on.push_back({one.at("label"), one.at("dataset"), one.at("sequence"),
-                               one.at("simulation"), one.at("fingerprint")});
+                               one.at("simulation"), one.at("fingerprint"),
+                               one.value("scans", std::set<std::uint64_t>())});
   }
   return preset;
 }
@@ -95,15 +97,20 @@ TunedPreset read_tuned_preset(const std::filesystem::path& file) {
 
 bool is_preset_file(const std::string& preset) { return preset.ends_with(".json"); }
 
-std::string tuning_doubt(const TunedPreset& preset, const Result& result) {
+std::string tuning_doubt(const TunedPreset& preset, const Result& result,
+                         const std::set<std::uint64_t>& scans) {
   const std::string simulation = drive_of(result.from.simulated);
   const auto named = std::ranges::find_if(preset.tuned_on, [&](const TunedSequence& one) {
     const bool has_name = one.dataset == result.dataset && one.sequence == result.sequence.text();
-    return one.simulation == simulation && (has_name || !simulation.empty());
+    const bool may_be_named = has_name && (one.scans.empty() || scans.empty());
+    return one.simulation == simulation && (may_be_named || !simulation.empty());
   });
-  const auto same = std::ranges::find(preset.tuned_on, result.from.fingerprint_without_poses,
-                                      &TunedSequence::fingerprint);
-  if (same != preset.tuned_on.end() && !same->fingerprint.empty()) {
+  const auto same = std::ranges::find_if(preset.tuned_on, [&](const TunedSequence& one) {
+    const std::string& fingerprint = result.from.fingerprint_without_poses;
+    return share_a_scan(one.scans, scans) ||
+           (one.fingerprint == fingerprint && !fingerprint.empty());
+  });
+  if (same != preset.tuned_on.end()) {
     return fmt::format("tuned on this sequence: {} chose its settings on {}", preset.file.string(),
                        same->label);
   }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <mosbench/method.hpp>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -14,8 +16,9 @@ namespace mosbench {
 struct TunedSequence {
   std::string label;  ///< "street-1 08": its data in the study, and its name
   std::string dataset, sequence;
-  std::string simulation;   ///< see `drive_of`; empty for recorded data
-  std::string fingerprint;  ///< of its scans, without poses
+  std::string simulation;              ///< see `drive_of`; empty for recorded data
+  std::string fingerprint;             ///< of its scans, without poses
+  std::set<std::uint64_t> scans = {};  ///< see `scan_hashes`; empty of what an older mosbench wrote
 };
 
 /// Settings that a study chose: what its preset file holds.
@@ -41,9 +44,10 @@ TunedPreset read_tuned_preset(const std::filesystem::path& file);
 /// Returns whether --preset names such a file.
 bool is_preset_file(const std::string& preset);
 
-/// Returns the doubt about a result with these settings on a sequence that they were chosen on:
-/// also where only its name or its simulation tells, as of another part of it, and on another seed
-/// of a scene. Empty for other sequences.
-std::string tuning_doubt(const TunedPreset& preset, const Result& result);
+/// Returns the doubt about a result with these settings on a sequence that they were chosen on, or
+/// on another seed of its scene. `scans` are those of the sequence as of `scan_hashes`; a name
+/// tells only where they are not known of both. Empty for other sequences.
+std::string tuning_doubt(const TunedPreset& preset, const Result& result,
+                         const std::set<std::uint64_t>& scans);
 
 }  // namespace mosbench

@@ -132,7 +132,8 @@ class Chooser {
       preset.settings = cell.job.segment.changes;
       bases.insert(mosbench::preset_of(cell.job, cell.kind).name);
       preset.tuned_on.push_back({cell.sequence_label(), std::string(to_string(cell.kind)),
-                                 cell.sequence, each.numbers.simulation, each.numbers.fingerprint});
+                                 cell.sequence, each.numbers.simulation, each.numbers.fingerprint,
+                                 cell.scans});
     }
     if (bases.size() == 1) preset.base = &preset_named(*bases.begin());
     return preset;

@@ -64,6 +64,9 @@ TEST(DataMarks, AreOfEachSequenceInEveryLayout) {
   EXPECT_EQ(marks_below(folder / "alone"), (std::multiset<std::string>{"disturbed", "simulated"}));
   make({"simulate", "--layout", "opensceneflow", "--scene", "room", "--scans", "6", "--seed", "1",
         "--out", folder / "flow"});
+  // Nor is a recorded one simulated that lies beside it.
+  fs::rename(folder / "opensceneflow/00.h5", folder / "flow/00.h5");
+  EXPECT_EQ(marks_below(folder / "flow"), (std::multiset<std::string>{"", "simulated"}));
   fs::rename(folder / "flow/room.h5", folder / "room.h5");
   EXPECT_EQ(marks_below(folder / "room.h5"), std::multiset<std::string>{"simulated"});
 }

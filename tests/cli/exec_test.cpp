@@ -282,6 +282,15 @@ TEST_F(Exec, SaysInAStudyThatItChangesAFileOfItsCommand) {
   EXPECT_THAT(run.err, HasSubstr("ours: a file that its command names has changed during the run"));
 }
 
+TEST_F(Exec, TakesAFileOfItsCommandThatItRemovesInAStudyForAChange) {
+  folder_.write("weights.pt", "");
+  const ProgramStudy study(folder_, client() + "; rm weights.pt # weights.pt");
+  const cli::Answer run = study.answer("run");
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("ours"));
+  EXPECT_THAT(run.err, HasSubstr("ours: a file that its command names has changed during the run"));
+}
+
 TEST_F(Exec, IsRefusedAtOnceWhereItNamesAFileThatIsNotThere) {
   for (const std::string name : {"weights.pt", "net/weights.onnx"}) {
     const cli::Answer answer = cli::run(command(client() + " # reads " + name));

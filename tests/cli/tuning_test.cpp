@@ -80,8 +80,31 @@ TEST_F(Tuning, WritesAPresetThatRunTakes) {
   EXPECT_THAT(scored.out, HasSubstr("tuned on this sequence"));
   const cli::Answer part = run({"run", path("data"), "--dataset", "semantickitti", "--sequences",
                                 "00", "--scans", ":8", "--preset", preset, "--out", path("part")});
-  EXPECT_THAT(part.out, HasSubstr("tuned on a sequence of this name"));
+  EXPECT_THAT(part.out, HasSubstr("tuned on this sequence"));
+  // Another layout and name; and another drive that has the name.
+  ASSERT_EQ(run({"convert", path("data"), "--dataset", "semantickitti", "--sequences", "00",
+                 "--layout", "nuscenes", "--out", path("copy")})
+                .exit_code,
+            0);
+  fs::create_directories(folder_ / "other/sequences");
+  fs::copy(folder_ / "data/sequences/01", folder_ / "other/sequences/00",
+           fs::copy_options::recursive);
+  for (const auto& [data, expected] :
+       {std::pair("copy", testing::Matcher<std::string>(HasSubstr("tuned on this sequence"))),
+        std::pair("other", testing::Matcher<std::string>(Not(HasSubstr("tuned on a"))))}) {
+    const cli::Answer answer =
+        run({"run", path(data), "--preset", preset, "--out", folder_ / "of" / data});
+    ASSERT_EQ(answer.exit_code, 0) << answer.err;
+    EXPECT_THAT(answer.out, expected) << data;
+  }
   // What the study did not write stays.
+  folder_.write("user.json", "{}");
+  fs::remove_all(folder_ / "out/cells");
+  const cli::Answer kept =
+      run({"run", path("s.yaml"), "--out", path("out"), "-o", path("user.json")});
+  EXPECT_EQ(kept.exit_code, 2);
+  EXPECT_THAT(kept.err, HasSubstr("user.json: is there and no json that mosbench wrote"));
+  EXPECT_FALSE(is_there(folder_ / "out/cells")) << "found before any work";
   write_file_atomic(preset, "my notes");
   fs::remove_all(folder_ / "out/cells");
   const cli::Answer foreign = run({"run", path("s.yaml"), "--out", path("out"), "--threads", "1"});
@@ -154,6 +177,17 @@ TEST_F(Tuning, RefusesToJudgeOnWhatItWasTunedOn) {
                 HasSubstr("which are the same drive"))
         << place;
   }
+  // A part of a copy, whose scans have other numbers.
+  ASSERT_EQ(run({"convert", path("data"), "--dataset", "semantickitti", "--sequences", "01",
+                 "--scans", "6:", "--layout", "semantickitti", "--out", path("part")})
+                .exit_code,
+            0);
+  EXPECT_THAT(
+      refusal("- {name: a, path: data, dataset: semantickitti, sequences: [\"01\"], reading: "
+              "{scans: \"6:\"}}\n- {name: b, path: part, dataset: semantickitti, reading: {scans: "
+              "\":6\"}}\n",
+              "b"),
+      HasSubstr("which are the same drive"));
   const std::string simulated =
       R"(- {name: a, simulate: {layout: semantickitti, scene: room, scans: 6, seed: 3}}
 - {name: b, simulate: {layout: doals, scene: room, scans: 8, seed: 3}}
@@ -197,6 +231,19 @@ TEST_F(Tuning, TakesSeedsOfASceneForOneSequence) {
   const cli::Answer study = run({"run", path("s.yaml"), "--out", path("out"), "--as", "json"});
   ASSERT_EQ(study.exit_code, 0) << study.err;
   EXPECT_EQ(ordered_json::parse(study.out).at("ranked_sequences"), 2);
+  // A foggy copy is no seed, and parts of one drive are none.
+  ASSERT_EQ(run({"convert", path("1"), "--perturb", "range_noise_m=0.1", "--layout",
+                 "semantickitti", "--out", path("noisy")})
+                .exit_code,
+            0);
+  folder_.write("s.yaml",
+                "name: kinds\nprotocol: semantickitti-mos\nmethods: [underwood, yoon]\n"
+                "data:\n- {name: clean, path: \"1\", reading: {scans: \":3\"}}\n"
+                "- {name: later, path: \"1\", reading: {scans: \"3:\"}}\n"
+                "- {name: noisy, path: noisy, reading: {scans: \":3\"}}\n");
+  const cli::Answer kinds = run({"run", path("s.yaml"), "--out", path("kinds"), "--as", "json"});
+  ASSERT_EQ(kinds.exit_code, 0) << kinds.err;
+  EXPECT_EQ(ordered_json::parse(kinds.out).at("ranked_sequences"), 3);
   folder_.write("s.yaml", head +
                               "methods: [underwood]\ngrid: {max_range_m: [3, 40]}\n"
                               "best_of: {metric: iou, tune_on: [s1], judge_on: [s2]}\n");

@@ -6,6 +6,8 @@
 #include <string>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/render.hpp"
 #include "eval/job/study_drives.hpp"
@@ -47,6 +49,12 @@ void enter_score(PlannedCell& planned, double iou) {
   planned.numbers.counts = {Confusion{.tp = moving, .fp = 1000 - moving}};
   planned.numbers.metrics = {iou, iou, 1.0};
   planned.numbers.fingerprint = "of " + planned.cell.sequence_label();
+}
+
+TunedPreset read_back(const TunedPreset& preset) {
+  const TempFolder folder;
+  folder.write("p.json", to_json(preset).dump());
+  return read_tuned_preset(folder / "p.json");
 }
 
 /// The plan of the study with IoUs by what a cell sets, and less in later sequences.
@@ -193,21 +201,53 @@ TEST(TunedPresets, AreReadAsTheyAreWritten) {
   result.dataset = "semantickitti";
   result.sequence = SequenceName("08", file);
   result.from.fingerprint_without_poses = "of room-2 08";
-  EXPECT_THAT(tuning_doubt(read, result), HasSubstr("tuned on this sequence: "));
+  const auto doubt = [&](const TunedPreset& preset, const std::set<std::uint64_t>& scans = {}) {
+    return tuning_doubt(preset, result, scans);
+  };
+  EXPECT_THAT(doubt(read), HasSubstr("tuned on this sequence: "));
   result.from.fingerprint_without_poses = "of another part";
-  EXPECT_THAT(tuning_doubt(read, result), HasSubstr("tuned on a sequence of this name: "));
+  EXPECT_THAT(doubt(read), HasSubstr("tuned on a sequence of this name: "));
+  TunedPreset known = read;
+  for (TunedSequence& one : known.tuned_on) one.scans = {1, 2};
+  EXPECT_EQ(read_back(known).tuned_on[1].scans, known.tuned_on[1].scans);
+  EXPECT_THAT(doubt(known), HasSubstr("tuned on a sequence of this name: "));
+  EXPECT_EQ(doubt(known, {3}), "") << "another drive of this name";
   result.sequence = SequenceName("09", file);
-  EXPECT_EQ(tuning_doubt(read, result), "");
+  EXPECT_EQ(doubt(read), "");
+  EXPECT_THAT(doubt(known, {2, 3}), HasSubstr("tuned on this sequence: "));
   TunedPreset simulated = read;
   result.from.simulated = SimulatedOrigin{"doals", "room", "f", 9, 5};
-  EXPECT_EQ(tuning_doubt(simulated, result), "");
+  EXPECT_EQ(doubt(simulated), "");
   simulated.tuned_on[0].simulation = drive_of(result.from.simulated);
-  EXPECT_THAT(tuning_doubt(simulated, result),
-              HasSubstr("tuned on a sequence of this simulation: "));
+  EXPECT_THAT(doubt(simulated), HasSubstr("tuned on a sequence of this simulation: "));
   result.from.simulated->seed = 6;
-  EXPECT_THAT(tuning_doubt(simulated, result), HasSubstr("tuned on another seed of this scene: "));
+  EXPECT_THAT(doubt(simulated), HasSubstr("tuned on another seed of this scene: "));
   result.from.simulated->scene_fingerprint = "g";
-  EXPECT_EQ(tuning_doubt(simulated, result), "");
+  EXPECT_EQ(doubt(simulated), "");
+}
+
+/// Scans of other numbers of points, or all of as many, each point so far from where it would be.
+std::set<std::uint64_t> hashes_of_drive(bool counts_differ, float noise_m, std::size_t first = 0) {
+  const TempFolder folder;
+  constexpr std::size_t kScans = 20;
+  for (std::size_t k = 0; k < kScans; ++k) {
+    std::vector<Point> points(counts_differ ? 9 + (k + first) * 7 % 23 : 9);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      points[i] = {static_cast<float>(5 + i) + noise_m, static_cast<float>(k + first), 0, 0};
+    }
+    write_bin(folder / fmt::format("velodyne/{:06}.bin", k), points);
+  }
+  write_poses(folder / "poses.txt", std::vector<Pose>(kScans, Pose::Identity()));
+  return scan_hashes({.path = folder.path()}, folder.path().filename());
+}
+
+TEST(ScanHashes, KnowACopyWhosePointsHaveNoiseByTheirNumbers) {
+  const auto drive = hashes_of_drive(true, 0);
+  EXPECT_TRUE(share_a_scan(drive, hashes_of_drive(true, 0.01F)));
+  EXPECT_TRUE(share_a_scan(drive, hashes_of_drive(true, 0.01F, 4))) << "a later part";
+  const auto organised = hashes_of_drive(false, 0);
+  EXPECT_TRUE(share_a_scan(organised, hashes_of_drive(false, 0)));
+  EXPECT_FALSE(share_a_scan(organised, hashes_of_drive(false, 0.01F)));
 }
 
 TEST(TunedPresets, AreRefusedWithTheirFile) {
