@@ -13,6 +13,10 @@
 namespace mosbench {
 namespace {
 
+std::string doubt_about_part(const Recording& recording) {
+  return "only a part of the sequence is read: " + recording.reading.scans;
+}
+
 class SequencePart : public SequenceAround {
  public:
   SequencePart(std::unique_ptr<Sequence> inner, const ScanRange& range)
@@ -28,7 +32,7 @@ class SequencePart : public SequenceAround {
     }
     recording.reading.scans =
         fmt::format("{}, {} of {}", to_string(range), size(), counted(all, "scan"));
-    recording.doubts.push_back("only a part of the sequence is read: " + recording.reading.scans);
+    recording.doubts.push_back(doubt_about_part(recording));
   }
 
   using Sequence::read;
@@ -96,6 +100,11 @@ std::unique_ptr<Sequence> with_scan_range(std::unique_ptr<Sequence> inner, const
   const std::size_t all = inner->size() + inner->recording().left_out.size();
   if (range.from == 0 && range.step == 1 && range.to.value_or(all) >= all) return inner;
   return std::make_unique<SequencePart>(std::move(inner), range);
+}
+
+std::vector<std::string> doubts_that_stay(std::vector<std::string> doubts, const Sequence& read) {
+  std::erase(doubts, doubt_about_part(read.recording()));
+  return doubts;
 }
 
 }  // namespace mosbench

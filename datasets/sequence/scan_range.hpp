@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace mosbench {
 
@@ -31,5 +32,9 @@ std::string to_string(const ScanRange& range);
 /// name, pose and truth; scans without a pose count, too. Returns it as it is where all are in the
 /// range. Throws UsageError when none is.
 std::unique_ptr<Sequence> with_scan_range(std::unique_ptr<Sequence> inner, const ScanRange& range);
+
+/// Returns those of the doubts that stay with what is made of all that was read: not that this was
+/// a part.
+std::vector<std::string> doubts_that_stay(std::vector<std::string> doubts, const Sequence& read);
 
 }  // namespace mosbench
