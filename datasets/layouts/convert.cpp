@@ -319,7 +319,7 @@ std::vector<std::string> convert(
       const auto files = writer.open(options.out / targets[i].folder, targets[i].writing);
       convert_sequence(sequence, *files, lost, advance);
       write_pose_origin(pose_file, pose_origin_of(sequence.reading().poses),
-                        sequence.recording().doubts);
+                        doubts_that_stay(sequence.recording().doubts, sequence));
     }
     unfinished.finish();
   } catch (...) {

@@ -69,7 +69,13 @@ std::optional<PoseMark> pose_mark(const fs::path& file) {
 
 PoseMark mark_of_poses(const fs::path& file) {
   const auto own = pose_mark(file);
-  return own && own->is_set() ? *own : pose_mark_of(mark_of_file(file, 0));
+  if (own && own->is_set()) return *own;
+  PoseMark mark = pose_mark_of(mark_of_file(file, 0));
+  const fs::path frame = frame_file(file);
+  if (!own && is_there(frame) && !has_foreign_mark(file)) {
+    mark.doubts.push_back(frame.filename().string() + " is of other poses");
+  }
+  return mark;
 }
 
 std::vector<std::string> doubts_of_poses(const fs::path& file, const DataMark& scans) {

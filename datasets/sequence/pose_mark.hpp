@@ -32,7 +32,8 @@ bool has_foreign_mark(const std::filesystem::path& file);
 /// Throws DataError where a file cannot be read.
 std::optional<PoseMark> pose_mark(const std::filesystem::path& file);
 
-/// Returns what FILE.frame says, else the mark of the data beside which FILE lies.
+/// Returns what FILE.frame says, else the mark of the data beside which FILE lies; with the doubt
+/// that FILE.frame is of other poses where it is of what FILE held before.
 PoseMark mark_of_poses(const std::filesystem::path& file);
 
 /// Returns what makes poses of a file doubtful for scans with such a mark; each begins with the

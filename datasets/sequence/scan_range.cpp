@@ -16,6 +16,10 @@
 namespace mosbench {
 namespace {
 
+std::string doubt_about_part(const Recording& recording) {
+  return "only a part of the sequence is read: " + recording.reading.scans;
+}
+
 /// A sequence without some of its scans.
 class SequencePart : public SequenceAround {
  public:
@@ -129,7 +133,7 @@ std::unique_ptr<Sequence> with_scan_range(std::unique_ptr<Sequence> inner, const
   recording.left_out.erase(others.begin(), others.end());
   recording.reading.scans =
       fmt::format("{}, {} of {}", to_string(range), part->size(), counted(all, "scan"));
-  recording.doubts.push_back("only a part of the sequence is read: " + recording.reading.scans);
+  recording.doubts.push_back(doubt_about_part(recording));
   return part;
 }
 
@@ -144,6 +148,11 @@ std::unique_ptr<Sequence> without_useless_scans(std::unique_ptr<Sequence> inner)
   part->mutable_recording().reading.drop_scans = found;
   part->mutable_recording().remarks.push_back("scans left out: " + found);
   return part;
+}
+
+std::vector<std::string> doubts_that_stay(std::vector<std::string> doubts, const Sequence& read) {
+  std::erase(doubts, doubt_about_part(read.recording()));
+  return doubts;
 }
 
 }  // namespace mosbench

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace mosbench {
 
@@ -35,5 +36,9 @@ std::unique_ptr<Sequence> with_scan_range(std::unique_ptr<Sequence> inner, const
 /// Returns the sequence in the same way without scans that have no points, and those that have the
 /// points of an earlier one bit for bit. Throws UsageError when none is left.
 std::unique_ptr<Sequence> without_useless_scans(std::unique_ptr<Sequence> inner);
+
+/// Returns those of the doubts that stay with what is made of all that was read: not that this was
+/// a part.
+std::vector<std::string> doubts_that_stay(std::vector<std::string> doubts, const Sequence& read);
 
 }  // namespace mosbench

@@ -33,9 +33,12 @@ std::string simulate_dataset(SimulateFlags options) {
     progress->advance();
   };
   for (const std::string& sentence : simulate(options.simulation, count)) tell(sentence);
-  return fmt::format("simulated {} of scene {}, seed {}, as {} in {}\n",
+  const auto& perturb = options.simulation.perturb;
+  return fmt::format("simulated {} of scene {}, seed {}{}, as {} in {}\n",
                      counted(options.simulation.scans, "scan"), options.simulation.scene,
-                     options.simulation.seed, options.layout, options.simulation.out.string());
+                     options.simulation.seed,
+                     perturb ? ", disturbed by " + to_string(*perturb) : "", options.layout,
+                     options.simulation.out.string());
 }
 
 }  // namespace

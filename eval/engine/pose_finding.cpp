@@ -123,7 +123,7 @@ std::vector<DoubtfulPose> doubtful_poses(const Sequence& sequence,
 }
 
 PoseMark mark_of_poses(const Sequence& sequence) {
-  return {mark_as_read(sequence).simulated, doubts_of(sequence)};
+  return {mark_as_read(sequence).simulated, doubts_that_stay(doubts_of(sequence), sequence)};
 }
 
 std::vector<Pose> poses_of(const std::vector<ScanPose>& scans) {

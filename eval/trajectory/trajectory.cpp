@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "datasets/disk/files.hpp"
@@ -38,7 +39,11 @@ PoseMark mark_of_path(const fs::path& file) {
   PoseMark mark = mark_of_poses(file);
   const fs::path result = file.parent_path() / "result.json";
   try {
-    if (!mark.is_set() && is_there(result)) mark = pose_mark_of(mark_of(read_result(result)));
+    if (!mark.simulated && is_there(result)) {
+      PoseMark of_data = pose_mark_of(mark_of(read_result(result)));
+      mark.simulated = std::move(of_data.simulated);
+      if (mark.doubts.empty()) mark.doubts = std::move(of_data.doubts);
+    }
   } catch (const DataError&) {  // of another program
   }
   return mark;
@@ -101,6 +106,7 @@ bool is_data_set(const fs::path& folder) {
 
 PosePath path_of_sequence(const Sequence& sequence, const fs::path& root) {
   PosePath path{sequence.name(), root, true, pose_mark_of(mark_as_read(sequence)), {}};
+  std::ranges::copy(sequence.recording().doubts, std::back_inserter(path.mark.doubts));
   for (std::size_t k = 0; k < sequence.size(); ++k) {
     path.list.poses.push_back(sequence.map_from_sensor(k));
     if (const auto stamp_ns = sequence.stamp_ns(k)) path.list.stamps_ns.push_back(*stamp_ns);

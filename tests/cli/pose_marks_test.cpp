@@ -46,6 +46,12 @@ class PoseMarks : public testing::Test {
                 HasSubstr(doubt));
     EXPECT_THAT(said_by({"stats", out}), HasSubstr(doubt));
     EXPECT_THAT(said_by({"stats", out, "--as", "json"}), HasSubstr(doubt));
+    const bool is_mark = doubt.find("simulated scans") != doubt.npos;
+    EXPECT_THAT(said_by_trajectory(poses), HasSubstr(is_mark ? "SIMULATED data" : doubt));
+  }
+
+  std::string said_by_trajectory(const std::string& poses) const {
+    return said_by({"trajectory", poses, "--truth", folder_ / "room/poses.txt"});
   }
 
   TempFolder folder_;
@@ -84,6 +90,10 @@ TEST_F(PoseMarks, OfDoubtfulPosesStayWithTheFileOfARunToo) {
   const std::vector<std::string> far = {"min_range_m=900,max_range_m=901"};
   said_by({"odometry", folder_ / "room", "--set", far[0], "-o", folder_ / "p.txt"});
   expect_said(moved("p.txt"), "p.txt: 6 of 6 poses found are doubtful");
+  said_by({"convert", folder_ / "room", "--poses", folder_ / "elsewhere/p.txt", "--layout",
+           "semantickitti", "--out", folder_ / "copy"});
+  EXPECT_THAT(said_by_trajectory(folder_ / "copy/sequences/room"),
+              HasSubstr("p.txt: 6 of 6 poses found are doubtful"));
   said_by({"run", folder_ / "room", "--odometry", "simple", "--odometry-set", far[0], "--out",
            folder_ / "found"});
   expect_said(folder_ / "found/room/poses.txt", "poses.txt: 6 of 6 poses found are doubtful");
@@ -96,9 +106,21 @@ TEST_F(PoseMarks, SayNothingWhereTheScansAreOfTheSameSimulationOrTheFileIsAnothe
       Not(HasSubstr("poses of simulated scans")));
   fs::copy_file(folder_ / "room/poses.txt", folder_ / "p.txt",
                 fs::copy_options::overwrite_existing);
+  const std::string other = "p.txt: p.txt.frame is of other poses";
   EXPECT_THAT(
       said_by({"run", folder_ / "room", "--poses", folder_ / "p.txt", "--out", folder_ / "other"}),
-      Not(HasSubstr("simulated")));
+      AllOf(HasSubstr(other), Not(HasSubstr("simulated"))));
+  EXPECT_THAT(said_by_trajectory(folder_ / "p.txt"), HasSubstr(other));
+}
+
+TEST_F(PoseMarks, DoNotSayOfAllOfACopyThatItIsAPart) {
+  const auto part = HasSubstr("only a part of the sequence is read");
+  said_by({"convert", folder_ / "room", "--scans", ":4", "--layout", "semantickitti", "--out",
+           folder_ / "copy"});
+  EXPECT_THAT(read_file(folder_ / "copy/sequences/room/pose_origin.txt"), Not(part));
+  EXPECT_THAT(said_by({"odometry", folder_ / "sim", "--scans", ":4", "-o", folder_ / "p.tum"}),
+              part);
+  EXPECT_THAT(read_file(folder_ / "p.tum.frame"), Not(part));
 }
 
 }  // namespace

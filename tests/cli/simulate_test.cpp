@@ -29,6 +29,13 @@ class Simulate : public testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(Simulate, SaysHowItDisturbs) {
+  const cli::Answer answer =
+      cli::run({"simulate", "--layout", "semantickitti", "--scene", "room", "--scans", "2",
+                "--seed", "5", "--perturb", "pose_noise_m=0.1", "--out", folder_ / "noisy"});
+  EXPECT_THAT(answer.out, HasSubstr("seed 5, disturbed by pose_noise_m=0.1,seed=1, as "));
+}
+
 TEST_F(Simulate, GivesDataThatRunAndScoreTakeAndNeverPassForReal) {
   for (const std::string layout : {"doals", "sipailou", "helimos", "semantickitti", "nuscenes",
                                    "kitti-raw", "kitti-tracking"}) {
