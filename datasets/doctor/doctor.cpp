@@ -322,9 +322,8 @@ std::optional<std::string> doubt_about_pose_frame(const Sequence& sequence) {
   return fmt::format(
       "THE POSES FIT AS THOSE OF THE {}: they were taken for the {}'s, under which scans overlap "
       "by "
-      "{:.2f} instead of {:.2f}, so that labels are wrong; expected {}",
-      of_camera ? "LIDAR" : "CAMERA", of_camera ? "camera" : "lidar", given, better,
-      of_camera ? option("pose_frame", "lidar") : other.advice);
+      "{:.2f} instead of {:.2f}, so that labels are wrong; {}",
+      of_camera ? "LIDAR" : "CAMERA", of_camera ? "camera" : "lidar", given, better, other.advice);
 }
 
 }  // namespace mosbench

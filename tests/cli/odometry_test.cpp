@@ -89,7 +89,7 @@ TEST_F(OdometryCommand, MarksItsPosesAsTheLidarsForCommandsThatReadThem) {
   std::filesystem::copy(folder_ / "poses.txt", folder_ / "copied.txt");
   EXPECT_THAT(labels_by(path("copied.txt"), "copied"), HasSubstr(doubt));
   const ordered_json doubts = cli::timeless_result(folder_ / "copied/08").at("doubts");
-  EXPECT_THAT(doubts.at(0).get<std::string>(), HasSubstr("expected --read pose_frame=lidar"));
+  EXPECT_THAT(doubts.at(0).get<std::string>(), HasSubstr("run with --read pose_frame=lidar"));
   std::filesystem::copy(truth_, folder_ / "poses.txt",
                         std::filesystem::copy_options::overwrite_existing);
   labels_by(path("poses.txt"), "overwritten");
