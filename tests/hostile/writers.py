@@ -42,7 +42,11 @@ WRITERS = {
     "odometry": "odometry data --threads 1 -o old.txt --overwrite",
 }
 BY_THE_CLOCK = {"p.json", "t.json"}
-OLD_FILES = {"old.html": b"an old page", "old.png": b"an old picture", "old.txt": b"old poses"}
+OLD_FILES = {
+    "old.html": b"<!doctype html>\nan old page of mosbench",
+    "old.png": b"\x89PNG, an old picture",
+    "old.txt": b"old poses",
+}
 
 
 @dataclass
