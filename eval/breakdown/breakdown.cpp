@@ -267,6 +267,7 @@ ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most) {
       {"object_count", breakdown.objects.size()},
       {"objects", ordered_json::array()},
       {"false_positive_clusters", ordered_json::array()}};
+  if (breakdown.reasons) json["by_reason"] = to_json(*breakdown.reasons);
   for (const ObjectTrack* object : worst_of(breakdown.objects, at_most)) {
     json["objects"].push_back(object_json(breakdown, *object));
   }
@@ -302,6 +303,7 @@ std::vector<Sheet> breakdown_sheets(const SequenceBreakdown& breakdown, const Br
     sheets.push_back(objects_sheet(breakdown, at_most));
     sheets.push_back(false_positives_sheet(breakdown, at_most));
   }
+  if (breakdown.reasons) sheets.push_back(reasons_sheet(*breakdown.reasons));
   sheets.front().lead.push_back(headline);
   return sheets;
 }

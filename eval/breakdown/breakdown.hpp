@@ -1,12 +1,14 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "datasets/sequence/sequence.hpp"
 #include "eval/answer/answer.hpp"
 #include "eval/breakdown/object_tracks.hpp"
+#include "eval/breakdown/reasons.hpp"
 #include "eval/breakdown/scan_breakdown.hpp"
 #include "eval/predictions/predictions.hpp"
 
@@ -27,6 +29,7 @@ struct SequenceBreakdown {
   BinCounts by_range, by_height;
   std::vector<ObjectTrack> objects;
   std::vector<FalseCluster> false_positives;  ///< worst first
+  std::optional<ReasonTable> reasons;         ///< where they were asked for
 };
 
 /// Rules and threads of a breakdown.
@@ -58,7 +61,7 @@ std::vector<RecallBin> recall_by_age(const std::vector<ObjectTrack>& objects);
 nlohmann::ordered_json to_json(const SequenceBreakdown& breakdown, std::size_t at_most);
 /// What of a breakdown is shown.
 struct BreakdownParts {
-  bool range = true, height = true, object = true;
+  bool range = true, height = true, object = true, reason = false;
 };
 std::vector<Sheet> breakdown_sheets(const SequenceBreakdown& breakdown, const BreakdownParts& parts,
                                     std::size_t at_most);

@@ -135,6 +135,7 @@ Answer breakdown_of_run(const StatsFlags& options, const CLI::App& command) {
     if (opened.scored_scans().empty()) continue;
     breakdowns.push_back(
         break_down(opened.sequence(), opened.scored_scans(), opened.labels(), task));
+    if (options.parts.reason) breakdowns.back().reasons = count_reasons(opened);
   }
   if (breakdowns.empty()) {
     throw DataError(options.input, "has no scan with truth",
@@ -145,6 +146,9 @@ Answer breakdown_of_run(const StatsFlags& options, const CLI::App& command) {
 
 Answer breakdown_of(const StatsFlags& options, const CLI::App& command) {
   if (!options.predictions) return breakdown_of_run(options, command);
+  if (options.parts.reason) {
+    throw UsageError("--by reason: labels of others say no reasons, expected a run in RUN");
+  }
   if (options.data) {
     throw UsageError(fmt::format("--data {}: RUN is the data set with --predictions, expected one",
                                  options.data->string()));
@@ -165,8 +169,9 @@ Answer curve(const StatsFlags& options, const ResultSet& run) {
 
 Answer stats(StatsFlags options, const CLI::App& command) {
   BreakdownParts& parts = options.parts;
-  parts = {options.shows("range"), options.shows("height"), options.shows("object")};
-  const bool breaks_down = parts.range || parts.height || parts.object;
+  parts = {options.shows("range"), options.shows("height"), options.shows("object"),
+           options.shows("reason")};
+  const bool breaks_down = parts.range || parts.height || parts.object || parts.reason;
   if (options.shows("threshold") + options.shows("scan") + breaks_down > 1) {
     throw UsageError("--by: threshold and scan go with nothing else, expected one of them alone");
   }
@@ -189,9 +194,10 @@ CommandRun add_stats(CLI::App& command) {
   auto options = std::make_shared<StatsFlags>();
   add_dataset_flags(command, *options, "RUN");
   add_list(command, "--by WHAT,...", options->by,
-           "Show right and wrong points by range, height and object; or precision over recall "
-           "by threshold; or, in JSON and CSV, by scan (default: intervals by sequence)")
-      ->check(CLI::IsMember({"range", "height", "object", "threshold", "scan"}));
+           "Show right and wrong points by range, height, object and the reason why they move; or "
+           "precision over recall by threshold; or, in JSON and CSV, by scan (default: intervals "
+           "by sequence)")
+      ->check(CLI::IsMember({"range", "height", "object", "reason", "threshold", "scan"}));
   add(command, "--data DIR", options->data,
       "Folder of the data set (default: where the run read it)");
   add(command, "-o,--out FILE", options->picture, "PNG file to draw the curve to; - is stdout");
