@@ -18,6 +18,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/formats/byte_cursor.hpp"
+#include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 
@@ -310,6 +311,20 @@ std::vector<std::int64_t> Hdf5File::integers(const Hdf5Group& group, const Hdf5A
                     "integers or truth values");
   }
   return converted<std::int64_t>(bytes_of(group, array), array.number);
+}
+
+bool others_have_marks(const std::filesystem::path& file) {
+  if (!mark_in(file.parent_path()).is_set()) return false;
+  std::error_code ignored;
+  const std::filesystem::directory_iterator others(file.parent_path(), ignored);
+  return std::any_of(begin(others), end(others), [&](const auto& other) {
+    if (other.path() == file || other.path().extension() != file.extension()) return false;
+    try {
+      return !Hdf5File(other.path(), {}).mark().empty();
+    } catch (const DataError&) {  // which fails where it is needed
+      return false;
+    }
+  });
 }
 
 }  // namespace mosbench

@@ -60,6 +60,10 @@ class Hdf5File {
   std::vector<Hdf5Group> groups_;
 };
 
+/// Whether the mark of a file's folder is known to be of others in it, which hold it themselves,
+/// too. What an earlier mosbench simulated does not.
+bool others_have_marks(const std::filesystem::path& file);
+
 /// Returns nullptr when the group has no array of this name.
 const Hdf5Array* find_array(const Hdf5Group& group, std::string_view name);
 

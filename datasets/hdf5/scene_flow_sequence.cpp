@@ -34,22 +34,6 @@ bool is_list_of(const Hdf5Array& array, std::uint64_t points) {
   return is_flat && array.shape[0] == points;
 }
 
-/// Whether a mark beside a file is known to be of others, which hold it themselves, too. What an
-/// earlier mosbench simulated does not.
-bool others_have_marks(const std::filesystem::path& file) {
-  if (!mark_in(file.parent_path()).is_set()) return false;
-  std::error_code ignored;
-  const std::filesystem::directory_iterator others(file.parent_path(), ignored);
-  return std::any_of(begin(others), end(others), [&](const auto& other) {
-    if (other.path() == file || other.path().extension() != file.extension()) return false;
-    try {
-      return !Hdf5File(other.path(), {}).mark().empty();
-    } catch (const DataError&) {  // which fails where it is needed
-      return false;
-    }
-  });
-}
-
 /// The scans of an .h5 file of OpenSceneFlow, a group each, by stamp. A scan is labelled when it
 /// has a flow to the next one, from which truth is computed by speed; or `mos_label`.
 class SceneFlowSequence : public Sequence {

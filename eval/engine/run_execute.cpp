@@ -115,8 +115,9 @@ std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence&
     tell(fmt::format("{}: {}", sequence.name(), *doubt));
     doubts.push_back(std::move(*doubt));
   };
-  if (!plan.odometry) add(doubt_about_pose_frame(sequence));
-  if (!plan.odometry && doubts.empty()) add(doubt_about_pose_fit(sequence));
+  if (plan.odometry) return doubts;
+  add(doubt_about_pose_frame(sequence));
+  if (doubts.empty()) add(doubt_about_pose_fit(sequence));
   return doubts;
 }
 
