@@ -110,7 +110,7 @@ class PlusTwin final : public Method {
         return other != nullptr && other->last_seen == k_ && !scan.occupied.contains(u);
       };
       const bool is_open = sees_through({v.x, v.y, v.z - 1}) || sees_through({v.x, v.y, v.z + 1});
-      if (young(*cell) && is_open) scan.open.insert(v);
+      if (is_open) scan.open.insert(v);
       if (young(*cell) && may_be_seed(v, true)) scan.seeds.insert(v);
       if (young(*cell) && is_within(*cell, c_.fresh_age_s)) scan.fresh.insert(v);
       if (cell->occupied_ticks >= 5) scan.aged.insert(v);
@@ -356,7 +356,7 @@ class PlusTwin final : public Method {
     double arrived = 0, open = 0;
     for (const Voxel& v : voxels) {
       arrived += scan.arrived.contains(v) ? 1 : 0;
-      open += scan.open.contains(v) ? 1 : 0;
+      open += scan.arrived.contains(v) && scan.open.contains(v) ? 1 : 0;
     }
     const auto are_level = [&](const SetOf& others) {
       return std::ranges::all_of(others, [&](const Voxel& v) { return v.z == voxels.begin()->z; });

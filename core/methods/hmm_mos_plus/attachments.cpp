@@ -85,8 +85,9 @@ Attachments::Seen Attachments::look_at(const VoxelizedScan& scan, const ArrivalC
     const BlockIndex& block = scan.measured.blocks[slot];
     const BlockMask* own = voxels.mask_of(block);
     if (own != nullptr) {
-      seen.arrived += (*own & classes.arrived[slot]).count();
-      seen.open += (*own & classes.open[slot]).count();
+      const BlockMask arrived = *own & classes.arrived[slot];
+      seen.arrived += arrived.count();
+      seen.open += (arrived & classes.open[slot]).count();
     }
     BlockMask beside = without(classes.settled[slot], low.in(slot));
     if (own != nullptr) beside = without(beside, *own);
