@@ -30,6 +30,12 @@ float angle_of(float y, float x) {
   return y < 0 ? -angle : angle;
 }
 
+/// std::floor is a call of the library on baseline x86-64.
+int floor_of(float value) {
+  const int whole = static_cast<int>(value);
+  return whole - (value < static_cast<float>(whole) ? 1 : 0);
+}
+
 }  // namespace
 
 Bearing bearing_of(const Eigen::Vector3f& p) {
@@ -37,9 +43,8 @@ Bearing bearing_of(const Eigen::Vector3f& p) {
   Bearing bearing;
   bearing.range_m = std::sqrt(level + p.z() * p.z());
   if (!std::isfinite(bearing.range_m)) return bearing;
-  bearing.row = static_cast<int>(std::floor(-angle_of(p.z(), std::sqrt(level)) * kRowsPerRadian));
-  const int column =
-      static_cast<int>(std::floor(angle_of(p.y(), p.x()) * kColumnsPerRadian)) % kColumns;
+  bearing.row = floor_of(-angle_of(p.z(), std::sqrt(level)) * kRowsPerRadian);
+  const int column = floor_of(angle_of(p.y(), p.x()) * kColumnsPerRadian);
   bearing.column = column < 0 ? column + kColumns : column;
   return bearing;
 }

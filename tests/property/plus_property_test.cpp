@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -170,6 +171,12 @@ TEST(PlusObjectsThatLeave, AreEdgesBetweenTwoBeamsWhereTheyAreSeenToBeFlat) {
   };
   EXPECT_EQ(departed_scans(0.03F), 0U);
   EXPECT_GT(departed_scans(-0.22F), 0U);
+}
+
+TEST(PlusDelays, AreSaidToBeLongBeyondFifteenScans) {
+  EXPECT_THAT(hmm_mos_plus::Pipeline(plus_of_a_room(15), {}).remarks(), testing::IsEmpty());
+  EXPECT_THAT(hmm_mos_plus::Pipeline(plus_of_a_room(16), {}).remarks(),
+              testing::ElementsAre(testing::HasSubstr("after 16 scans surfaces")));
 }
 
 /// Returns the stamps of `scans` scans.
