@@ -340,7 +340,7 @@ class PlusTwin final : public Method {
         arrived += seen.arrived, settled += seen.settled_beside;
       }
       const bool stays =
-          scan.tick - since >= 2 && settled > 0.05 * voxels && arrived < 0.9 * voxels &&
+          scan.tick - since >= 2 && arrived < (settled > 0.05 * voxels ? 0.9 : 0.3) * voxels &&
           left_in_box(all, scan.tick) < 0.1 * static_cast<double>(component.voxels.size());
       const bool is_attached =
           stays || (settled > c_.max_settled_share * voxels && arrived < 0.8 * voxels);

@@ -18,7 +18,7 @@ constexpr std::uint32_t kLeavesTicks = 2;
 constexpr double kLeftShare = 0.1;
 /// Limits for what left fewer: settled voxels beside it per voxel, and the share that arrived.
 constexpr double kStayingSettledShare = 0.05, kStayingArrivedShare = 0.9;
-/// What is new and arrived by less came into view.
+/// What is new, or left nothing behind, and arrived by less came into view.
 constexpr double kNewArrivedShare = 0.3;
 /// A flat thing is seen to be so by more than this share of what arrived.
 constexpr double kOpenShare = 0.2;
@@ -117,9 +117,10 @@ bool Attachments::is_attached(const Seen& component, const RememberedMap& map) c
   if (all.settled > max_settled_share_ * all.voxels && all.arrived < kArrivedShare * all.voxels) {
     return true;
   }
-  return component.at - all.since >= kLeavesTicks &&
-         all.settled > kStayingSettledShare * all.voxels &&
-         all.arrived < kStayingArrivedShare * all.voxels &&
+  const bool stays = all.settled > kStayingSettledShare * all.voxels
+                         ? all.arrived < kStayingArrivedShare * all.voxels
+                         : all.arrived < kNewArrivedShare * all.voxels;
+  return component.at - all.since >= kLeavesTicks && stays &&
          static_cast<double>(left_in(all.box, component.at, map)) <
              kLeftShare * static_cast<double>(component.voxels);
 }
