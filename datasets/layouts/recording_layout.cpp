@@ -108,11 +108,13 @@ std::vector<SequenceFolder> list_recording(const std::filesystem::path& path) {
   for (const BagParts& bag : bags) {
     const std::filesystem::path& first = bag.files.front();
     const std::filesystem::path own_name = is_bag_folder(first) ? first.filename() : first.stem();
-    const bool is_joined = bag.files.size() > 1;
-    std::string name = is_joined && !bag.name.empty() ? bag.name : own_name.string();
+    const bool is_part = bag.files.size() > 1 || !bag.doubt.empty();
+    // Two stretches of one drive, with a part missing between, are called as their first parts.
+    const bool is_whole = std::ranges::count(bags, bag.name, &BagParts::name) == 1;
+    std::string name = is_whole && !bag.name.empty() ? bag.name : own_name.string();
     if (is_one && !is_bag_folder(first)) name = folder_name(path);
     // Only a recording in parts has a second name.
-    sequences.push_back({std::move(name), first, is_joined ? own_name.string() : ""});
+    sequences.push_back({std::move(name), first, is_part ? own_name.string() : ""});
   }
   expect_own_names(path, sequences);
   if (sequences.empty() && !scans_in(path).empty()) return {{folder_name(path), path, ""}};
@@ -127,7 +129,9 @@ std::unique_ptr<Sequence> open_recording(const SequenceFolder& sequence, const R
         std::ranges::find_if(bags, [&](const BagParts& bag) { return bag.files.front() == path; });
     if (parts == bags.end())
       throw DataError(path, "changed while it was read", "a whole recording");
-    return std::make_unique<BagSequence>(sequence.name, open_bag(*parts), asked);
+    auto drive = std::make_unique<BagSequence>(sequence.name, open_bag(*parts), asked);
+    if (!parts->doubt.empty()) drive->add_doubt(parts->doubt);
+    return drive;
   }
   if (is_bag(path)) return std::make_unique<BagSequence>(sequence.name, path, asked);
   if (is_scan(path)) return std::make_unique<SingleScan>(sequence.name, path, asked);
