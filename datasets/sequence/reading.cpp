@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -41,6 +44,19 @@ std::string_view direction_text(const PosesDone& poses) {
 }
 
 }  // namespace
+
+std::vector<std::string> lidar_names(const Reading& asked) {
+  constexpr std::size_t kMost = 6;
+  std::vector<std::string> names;
+  for (const std::string_view part : split_at_commas(asked.lidars.value_or(""))) {
+    if (part.empty() || names.size() == kMost || std::ranges::find(names, part) != names.end()) {
+      throw UsageError(fmt::format("{}: expected the names of one to six LiDARs, each once",
+                                   option("lidars", asked.lidars.value_or(""))));
+    }
+    names.emplace_back(part);
+  }
+  return names;
+}
 
 std::string to_string(const Perturbation& perturbation) {
   std::vector<std::string> parts;
@@ -93,6 +109,7 @@ ReadingMembers members_of(const ReadingDone& reading) {
   members.add("scans", reading.scans);
   members.add("drop_scans", reading.drop_scans);
   members.add("scan_files", reading.scan_files);
+  members.add("lidars", reading.lidars);
   if (reading.bin_columns) members.add("bin_columns", std::to_string(*reading.bin_columns));
   members.add("point_times", reading.point_times);
   members.add("stamps", reading.stamps);
