@@ -113,8 +113,8 @@ StagedScans::StagedScans(const Workload& chosen)
     StagedScan& staged = all.emplace_back(frame, static_cast<std::uint32_t>(all.size()));
     staged.scan = voxelize(frame.points, frame.map_from_sensor, grid, config.min_range_m,
                            config.max_range_m, pool);
-    staged.observed = raycast(staged.scan.measured, staged.scan.sensor_voxel, config.voxel_size_m,
-                              config.max_range_m, scratch, pool);
+    staged.observed =
+        raycast(ray_sources(staged.scan, config.voxel_size_m, config.max_range_m), scratch, pool);
     staged.state_changes = voxels_of(update(map, staged, pool));
     map.evict(staged.k);
     const auto expected = std::move(pipeline.push(frame.points, frame.map_from_sensor)[0].labels);

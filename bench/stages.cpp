@@ -61,8 +61,7 @@ void raycast_stage(benchmark::State& state, StagedScans& staged, ThreadPool& poo
   measure_stage(
       state, staged,
       [&](const StagedScan& s) {
-        return raycast(s.scan.measured, s.scan.sensor_voxel, config.voxel_size_m,
-                       config.max_range_m, scratch, pool);
+        return raycast(ray_sources(s.scan, config.voxel_size_m, config.max_range_m), scratch, pool);
       },
       [](const StagedScan& s, const VoxelList& observed) {
         return voxels_of(observed) == voxels_of(s.observed);

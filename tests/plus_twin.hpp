@@ -27,7 +27,7 @@ struct Cell {
 };
 
 struct Scan final : Observed {
-  PointVoxels voxels;
+  std::vector<std::optional<Voxel>> of_point;
   SetOf measured, observed, occupied, ground, seeds, arrived, open, fresh, settled, aged, standing,
       departed;
   SetOf predicted;
@@ -65,23 +65,17 @@ class PlusTwin final : public Method {
                     const std::vector<std::int64_t>& stamps_ns = {})
       : c_(config), stamps_ns_(stamps_ns) {}
 
-  std::unique_ptr<Observed> observe(std::span<const Point> points, const Pose& t) override {
+  std::unique_ptr<Observed> observe(std::span<const Point> points, const Pose& t,
+                                    const RayOrigins& origins) override {
     auto scan = std::make_unique<Scan>();
     scan->sensor_m = t.translation();
-    scan->voxels = voxels_of(points, t, c_.map.min_range_m, c_.map.voxel_size_m);
-    scan->result.nonfinite_points = scan->voxels.nonfinite_points;
-    for (const std::optional<Voxel>& v : scan->voxels.of_point) {
-      if (v) scan->measured.insert(*v);
-    }
-    const Voxel s = voxel_at(scan->sensor_m, c_.map.voxel_size_m);
-    for (const Voxel& v : scan->measured) {
-      if (distance_sq_m2(v, scan->sensor_m) <= squared(c_.map.max_range_m))
-        scan->occupied.insert(v);
-      for (const Voxel& q : line(s, v))
-        if (distance_sq_m2({s.x - q.x, s.y - q.y, s.z - q.z}, Eigen::Vector3d::Zero()) <=
-            squared(c_.map.max_range_m))
-          scan->observed.insert(q);
-    }
+    SeenVoxels seen =
+        see(points, t, origins, {c_.map.min_range_m, c_.map.max_range_m}, c_.map.voxel_size_m);
+    scan->result.nonfinite_points = seen.nonfinite_points;
+    scan->of_point = std::move(seen.of_point);
+    scan->measured = std::move(seen.measured);
+    scan->occupied = std::move(seen.occupied);
+    scan->observed = std::move(seen.observed);
     return scan;
   }
 
@@ -298,7 +292,7 @@ class PlusTwin final : public Method {
         if (u.z == v.z + 1 && objects.contains(u) && (is_straight || !scan.aged.contains(v)))
           moving.insert(v);
       });
-    for (const auto& v : scan.voxels.of_point) {
+    for (const auto& v : scan.of_point) {
       scan.result.labels.push_back(v && moving.contains(*v) ? kMovingLabel : kStaticLabel);
       const float* share = v ? find(shares, *v) : nullptr;
       scan.result.scores.push_back(share == nullptr ? 0 : *share);

@@ -20,6 +20,10 @@ using namespace hmm_mos;
 struct SmallWorld {
   std::vector<std::vector<Point>> scans;
   std::vector<Pose> poses;
+  std::vector<RayOrigins> origins;  ///< of a rig: one per scan
+
+  /// Where the rays of scan k start.
+  RayOrigins origins_of(std::size_t k) const { return origins.empty() ? RayOrigins{} : origins[k]; }
 };
 
 struct SmallWorldOptions {
@@ -28,11 +32,12 @@ struct SmallWorldOptions {
   int azimuths = 30, elevations = 12;  ///< rays per scan
   int moving_boxes = 2;
   double noise_m = 0.0;
-  double jitter_rad = 0.03;                               ///< of each ray's direction
-  double walk_m = 0.1;                                    ///< sensor step per scan
-  Eigen::Vector3d origin_m{0.0, 0.0, 0.0};                ///< of the room in the map frame
-  std::vector<Eigen::Vector3d> jumps_m{{0.0, 0.0, 0.0}};  ///< the room's copy seen by scan k:
-                                                          ///< entry k modulo the list's size
+  double jitter_rad = 0.03;                                ///< of each ray's direction
+  double walk_m = 0.1;                                     ///< sensor step per scan
+  Eigen::Vector3d origin_m{0.0, 0.0, 0.0};                 ///< of the room in the map frame
+  std::vector<Eigen::Vector3d> jumps_m{{0.0, 0.0, 0.0}};   ///< the room's copy seen by scan k:
+                                                           ///< entry k modulo the list's size
+  std::vector<Eigen::Vector3d> mounts_m{{0.0, 0.0, 0.0}};  ///< of the sensors; several: a rig
   bool defects = false;  ///< empty scans, all too near or too far, NaN, infinite, duplicate points
 };
 
@@ -124,26 +129,32 @@ inline SmallWorld small_world(const SmallWorldOptions& options) {
     pose.linear() = Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     pose.translation() = options.origin_m + options.jumps_m[k % options.jumps_m.size()] + sensor;
     std::vector<Point>& points = world.scans.emplace_back();
-    for (int elevation = 0; elevation < options.elevations; ++elevation) {
-      for (int azimuth = 0; azimuth < options.azimuths; ++azimuth) {
-        const double a = 6.283185307179586 * (azimuth + 0.37) / options.azimuths +
-                         uniform(-1, 1) * options.jitter_rad;
-        const double e = -0.7 + 1.4 * (elevation + 0.41) / options.elevations +
-                         uniform(-1, 1) * options.jitter_rad;
-        const Eigen::Vector3d ray{std::cos(a) * std::cos(e), std::sin(a) * std::cos(e),
-                                  std::sin(e)};
-        double range = distance_to(room, sensor, ray, true);
-        for (const Mover& mover : movers) {
-          range =
-              std::min(range, distance_to({mover.centre - mover.half, mover.centre + mover.half},
-                                          sensor, ray, false));
+    RayOrigins origins{options.mounts_m, {}};
+    for (const Eigen::Vector3d& mount : options.mounts_m) {
+      const Eigen::Vector3d from = sensor + pose.linear() * mount;
+      for (int elevation = 0; elevation < options.elevations; ++elevation) {
+        for (int azimuth = 0; azimuth < options.azimuths; ++azimuth) {
+          const double a = 6.283185307179586 * (azimuth + 0.37) / options.azimuths +
+                           uniform(-1, 1) * options.jitter_rad;
+          const double e = -0.7 + 1.4 * (elevation + 0.41) / options.elevations +
+                           uniform(-1, 1) * options.jitter_rad;
+          const Eigen::Vector3d ray{std::cos(a) * std::cos(e), std::sin(a) * std::cos(e),
+                                    std::sin(e)};
+          double range = distance_to(room, from, ray, true);
+          for (const Mover& mover : movers) {
+            range =
+                std::min(range, distance_to({mover.centre - mover.half, mover.centre + mover.half},
+                                            from, ray, false));
+          }
+          range += options.noise_m * uniform(-1, 1);
+          const Eigen::Vector3d p = pose.linear().transpose() * (ray * range) + mount;
+          points.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()),
+                            static_cast<float>(p.z()), 0.0F});
+          origins.of_point.push_back(static_cast<std::uint8_t>(&mount - options.mounts_m.data()));
         }
-        range += options.noise_m * uniform(-1, 1);
-        const Eigen::Vector3d p = pose.linear().transpose() * (ray * range);
-        points.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()),
-                          static_cast<float>(p.z()), 0.0F});
       }
     }
+    if (options.mounts_m.size() > 1) world.origins.push_back(std::move(origins));
     world.poses.push_back(pose);
     if (std::abs(sensor.x() + walk.x()) < 1.5 && std::abs(sensor.y() + walk.y()) < 1.5) {
       sensor += walk;
@@ -173,7 +184,7 @@ inline std::vector<LabelledScan> results_of(Method& pipeline, const SmallWorld& 
     for (LabelledScan& result : results) all.push_back(std::move(result));
   };
   for (std::size_t k = 0; k < world.scans.size(); ++k) {
-    take(pipeline.push(world.scans[k], world.poses[k]));
+    take(pipeline.push(world.scans[k], world.poses[k], world.origins_of(k)));
   }
   take(pipeline.finish());
   return all;
@@ -197,6 +208,9 @@ inline std::size_t moving_points(const std::vector<std::vector<std::uint32_t>>& 
   }
   return moving;
 }
+
+/// Two sensors 2 m apart in the frame of the scans.
+inline std::vector<Eigen::Vector3d> two_mounts() { return {{-1.0, 0.0, 0.0}, {1.0, 0.1, 0.2}}; }
 
 /// Scans of a sensor that stands and looks ahead. Rays of slope y and z end at x = distance_m(k, y,
 /// z) in scan k.

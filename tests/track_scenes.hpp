@@ -68,7 +68,8 @@ class ToldMethod final : public Method {
  public:
   std::vector<std::vector<std::uint32_t>> labels;  ///< by scan
 
-  std::unique_ptr<Observed> observe(std::span<const Point>, const Pose&) override {
+  std::unique_ptr<Observed> observe(std::span<const Point>, const Pose&,
+                                    const RayOrigins&) override {
     return std::make_unique<Observed>();
   }
   std::vector<LabelledScan> push(std::unique_ptr<Observed>) override {

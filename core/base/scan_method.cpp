@@ -1,5 +1,6 @@
 #include "core/base/scan_method.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <utility>
@@ -43,17 +44,39 @@ void check_rigid(const Pose& pose) {
   }
 }
 
+void check_origins(const RayOrigins& origins, std::size_t points) {
+  if (origins.empty() && origins.positions_m.empty()) return;
+  const auto has_place = [&](std::uint8_t index) { return index < origins.positions_m.size(); };
+  const auto is_finite = [](const Eigen::Vector3d& place) { return place.allFinite(); };
+  if (origins.of_point.size() != points || !std::ranges::all_of(origins.of_point, has_place) ||
+      !std::ranges::all_of(origins.positions_m, is_finite)) {
+    throw std::invalid_argument(
+        "origins: do not fit the points, expected finite positions and one index of them per "
+        "point");
+  }
+}
+
+void expect_one_origin(const RayOrigins& origins) {
+  if (origins.empty()) return;
+  throw std::invalid_argument(
+      "origins: are of several sensors, expected the points of one: this method looks from one "
+      "place");
+}
+
 const RunContext& checked(const RunContext& context) {
   if (context.threads == 0) throw std::invalid_argument("threads: 0, expected at least 1");
   return context;
 }
 
 std::unique_ptr<PosedScan> SequentialMethod::see(std::span<const Point> points,
-                                                 const Pose& map_from_sensor, ThreadPool&) {
+                                                 const Pose& map_from_sensor,
+                                                 const RayOrigins& origins, ThreadPool&) {
+  if (!takes_origins_) expect_one_origin(origins);
   auto scan = std::make_unique<PosedScan>();
   scan->nonfinite_points = count_nonfinite(points, reach_m_);
   scan->points.assign(points.begin(), points.end());
   scan->map_from_sensor = map_from_sensor;
+  scan->origins = origins;
   return scan;
 }
 

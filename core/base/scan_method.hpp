@@ -22,6 +22,12 @@ struct NumberedScan : Observed {
 /// orthonormal right-handed one by more than a thousandth.
 void check_rigid(const Pose& pose);
 
+/// Throws std::invalid_argument unless each of `points` points has one finite origin, or none any.
+void check_origins(const RayOrigins& origins, std::size_t points);
+
+/// Throws std::invalid_argument for several origins: of a method that looks from one place.
+void expect_one_origin(const RayOrigins& origins);
+
 /// Returns the context. Throws std::invalid_argument for 0 threads.
 const RunContext& checked(const RunContext& context);
 
@@ -30,11 +36,11 @@ const RunContext& checked(const RunContext& context);
 template <typename Scan>
 class ScanMethod : public Method {
  public:
-  std::unique_ptr<Observed> observe(std::span<const Point> points,
-                                    const Pose& map_from_sensor) final {
+  std::unique_ptr<Observed> observe(std::span<const Point> points, const Pose& map_from_sensor,
+                                    const RayOrigins& origins = {}) final {
     // The other half of the threads pushes the previous scan.
     if (!observing_pool_) observing_pool_.emplace(std::max(1U, pool_.size() / 2));
-    return observe_by(points, map_from_sensor, *observing_pool_);
+    return observe_by(points, map_from_sensor, origins, *observing_pool_);
   }
   std::vector<LabelledScan> push(std::unique_ptr<Observed> observed) final {
     expect_scan();
@@ -49,9 +55,10 @@ class ScanMethod : public Method {
     ++pushed_;
     return enter(*scan);
   }
-  std::vector<LabelledScan> push(std::span<const Point> points, const Pose& map_from_sensor) final {
+  std::vector<LabelledScan> push(std::span<const Point> points, const Pose& map_from_sensor,
+                                 const RayOrigins& origins = {}) final {
     expect_scan();
-    return push(observe_by(points, map_from_sensor, pool_));
+    return push(observe_by(points, map_from_sensor, origins, pool_));
   }
   std::vector<LabelledScan> finish() final {
     finished_ = true;
@@ -71,16 +78,17 @@ class ScanMethod : public Method {
  private:
   /// Does what needs no scan before it, as Method::observe, with the threads of a pool.
   virtual std::unique_ptr<Scan> see(std::span<const Point> points, const Pose& map_from_sensor,
-                                    ThreadPool& pool) = 0;
+                                    const RayOrigins& origins, ThreadPool& pool) = 0;
   /// Takes the next scan in. Returns scans as Method::push does.
   virtual std::vector<LabelledScan> enter(Scan& scan) = 0;
   /// Returns the scans that are still held.
   virtual std::vector<LabelledScan> release() { return {}; }
 
   std::unique_ptr<Scan> observe_by(std::span<const Point> points, const Pose& map_from_sensor,
-                                   ThreadPool& pool) {
+                                   const RayOrigins& origins, ThreadPool& pool) {
     check_rigid(map_from_sensor);
-    auto scan = see(points, map_from_sensor, pool);
+    check_origins(origins, points.size());
+    auto scan = see(points, map_from_sensor, origins, pool);
     scan->observer = this;
     scan->number = ++observed_;  // while another thread pushes the scan before
     return scan;
@@ -103,16 +111,17 @@ class ScanMethod : public Method {
 struct PosedScan final : NumberedScan {
   std::vector<Point> points;
   Pose map_from_sensor = Pose::Identity();
+  RayOrigins origins;
   std::size_t nonfinite_points = 0;
 };
 
 /// Base of methods that do all their work on a scan when it is pushed.
 class SequentialMethod : public ScanMethod<PosedScan> {
  protected:
-  /// Points with a coordinate beyond `reach_m` are refused. Throws std::invalid_argument for 0
-  /// threads.
-  SequentialMethod(const RunContext& context, double reach_m)
-      : ScanMethod(context), reach_m_(reach_m) {}
+  /// Points with a coordinate beyond `reach_m` are refused, and several origins unless it takes
+  /// them. Throws std::invalid_argument for 0 threads.
+  SequentialMethod(const RunContext& context, double reach_m, bool takes_origins = false)
+      : ScanMethod(context), reach_m_(reach_m), takes_origins_(takes_origins) {}
 
  private:
   /// Takes the next scan in. `result` is that of a scan that is not judged: its index is set, all
@@ -120,10 +129,11 @@ class SequentialMethod : public ScanMethod<PosedScan> {
   virtual std::vector<LabelledScan> take(PosedScan& scan, LabelledScan result) = 0;
 
   std::unique_ptr<PosedScan> see(std::span<const Point> points, const Pose& map_from_sensor,
-                                 ThreadPool& pool) final;
+                                 const RayOrigins& origins, ThreadPool& pool) final;
   std::vector<LabelledScan> enter(PosedScan& scan) final;
 
   double reach_m_;
+  bool takes_origins_;
 };
 
 }  // namespace mosbench

@@ -64,8 +64,8 @@ std::vector<std::uint8_t> in_range(const LookedScan& scan) {
   const auto most = static_cast<float>(scan.max_range_m);
   std::vector<std::uint8_t> inside;
   inside.reserve(scan.points_m.size());
-  for (const Eigen::Vector3f& point : scan.points_m) {
-    const float range = point.norm();
+  for (std::size_t i = 0; i < scan.points_m.size(); ++i) {
+    const float range = (scan.points_m[i] - scan.origins.at(i).cast<float>()).norm();
     inside.push_back(range > least && range <= most ? 1 : 0);  // NaN is not
   }
   return inside;

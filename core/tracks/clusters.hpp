@@ -21,6 +21,7 @@ struct LookedScan {
   std::span<const Eigen::Vector3f> positions_m;  ///< the same in the map's
   std::span<const std::uint8_t> proposed;        ///< not 0: a method calls the point moving
   double min_range_m = 0, max_range_m = 0;       ///< points outside never move
+  const RayOrigins& origins;                     ///< that ranges are from
 };
 
 /// What is counted of a cluster, or of a track.

@@ -49,7 +49,7 @@ Bearing bearing_of(const Eigen::Vector3f& p) {
   return bearing;
 }
 
-SightImage::SightImage(std::span<const Point> points, double min_range_m) {
+SensorImage::SensorImage(std::span<const Point> points, double min_range_m) {
   std::vector<Bearing> bearings;
   bearings.reserve(points.size());
   const auto least = static_cast<float>(min_range_m);
@@ -94,14 +94,14 @@ SightImage::SightImage(std::span<const Point> points, double min_range_m) {
   }
 }
 
-const SightImage::Span* SightImage::around(const Bearing& bearing) const {
+const SensorImage::Span* SensorImage::around(const Bearing& bearing) const {
   const std::ptrdiff_t row = bearing.row - first_row_;
   const auto place = row * kColumns + bearing.column;
   if (row < 0 || place >= static_cast<std::ptrdiff_t>(pixels_.size())) return nullptr;
   return &pixels_[static_cast<std::size_t>(place)];
 }
 
-Sight SightImage::at(const Eigen::Vector3f& position_m) const {
+Sight SensorImage::at(const Eigen::Vector3f& position_m) const {
   const Bearing bearing = bearing_of(position_m);
   const Span* span = around(bearing);
   if (span == nullptr || span->nearest_m > span->farthest_m) return Sight::kHidden;
@@ -111,11 +111,46 @@ Sight SightImage::at(const Eigen::Vector3f& position_m) const {
   return span->nearest_m <= r + near && span->farthest_m >= r - near ? Sight::kHit : Sight::kHidden;
 }
 
-bool SightImage::repeats(const Eigen::Vector3f& position_m) const {
+bool SensorImage::repeats(const Eigen::Vector3f& position_m) const {
   const Bearing bearing = bearing_of(position_m);
   const Span* span = around(bearing);
   return span != nullptr && span->nearest_m <= bearing.range_m + kRepeats_m &&
          span->farthest_m >= bearing.range_m - kRepeats_m;
+}
+
+SightImage::SightImage(std::span<const Point> points, double min_range_m,
+                       const RayOrigins& origins) {
+  if (origins.empty()) views_.push_back({Eigen::Vector3f::Zero(), {points, min_range_m}});
+  std::vector<Point> own;
+  for (std::size_t sensor = 0; sensor < origins.positions_m.size(); ++sensor) {
+    const Eigen::Vector3f at = origins.positions_m[sensor].cast<float>();
+    own.clear();
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Point& p = points[i];
+      if (origins.of_point[i] != sensor) continue;
+      own.push_back({p.x - at.x(), p.y - at.y(), p.z - at.z(), p.intensity});
+    }
+    views_.push_back({at, {own, min_range_m}});
+  }
+}
+
+Sight SightImage::at(const Eigen::Vector3f& position_m) const {
+  Sight seen = Sight::kHidden;
+  for (const View& view : views_) {
+    seen = std::max(seen, view.image.at(position_m - view.sensor_m));
+  }
+  return seen;
+}
+
+bool SightImage::repeats(const Eigen::Vector3f& position_m) const {
+  return std::ranges::any_of(
+      views_, [&](const View& view) { return view.image.repeats(position_m - view.sensor_m); });
+}
+
+std::size_t SightImage::memory_bytes() const {
+  std::size_t bytes = 0;
+  for (const View& view : views_) bytes += view.image.memory_bytes();
+  return bytes;
 }
 
 }  // namespace mosbench::tracks

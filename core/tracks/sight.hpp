@@ -26,18 +26,14 @@ struct Bearing {
 /// The pixel of a position in the sensor's frame: half a degree high, 0.4 degrees wide.
 Bearing bearing_of(const Eigen::Vector3f& position_m);
 
-/// The ranges of a scan by direction.
-class SightImage {
+/// The ranges of one sensor's points by direction. Positions are from the sensor.
+class SensorImage {
  public:
-  SightImage() = default;
   /// Takes the points farther away than `min_range_m`; those that are not finite are left out.
-  SightImage(std::span<const Point> points, double min_range_m);
+  SensorImage(std::span<const Point> points, double min_range_m);
 
-  /// Says what the scan says of a position in its sensor's frame.
   Sight at(const Eigen::Vector3f& position_m) const;
-  /// Says whether a ray ended at this range in this direction, to 0.1 m.
   bool repeats(const Eigen::Vector3f& position_m) const;
-
   std::size_t memory_bytes() const { return pixels_.capacity() * sizeof(Span); }
 
  private:
@@ -49,6 +45,28 @@ class SightImage {
 
   int first_row_ = 0;
   std::vector<Span> pixels_;
+};
+
+/// The ranges of a scan by direction, from each place that its rays start at.
+class SightImage {
+ public:
+  SightImage() = default;
+  SightImage(std::span<const Point> points, double min_range_m, const RayOrigins& origins = {});
+
+  /// Says what the scan says of a position in its frame; what one sensor hit, no other sees
+  /// through.
+  Sight at(const Eigen::Vector3f& position_m) const;
+  /// Says whether a ray ended at this range in this direction, to 0.1 m.
+  bool repeats(const Eigen::Vector3f& position_m) const;
+
+  std::size_t memory_bytes() const;
+
+ private:
+  struct View {
+    Eigen::Vector3f sensor_m;
+    SensorImage image;
+  };
+  std::vector<View> views_;
 };
 
 }  // namespace mosbench::tracks

@@ -55,12 +55,14 @@ WholeTracks::WholeTracks(const WholeTracksConfig& config, std::unique_ptr<Method
       tracks_(period_.period_s, window_scans_) {}
 
 std::unique_ptr<SeenScan> WholeTracks::see(std::span<const Point> points,
-                                           const Pose& map_from_sensor, ThreadPool&) {
+                                           const Pose& map_from_sensor, const RayOrigins& origins,
+                                           ThreadPool&) {
   auto scan = std::make_unique<SeenScan>();
-  scan->proposing = proposing_->observe(points, map_from_sensor);
+  scan->proposing = proposing_->observe(points, map_from_sensor, origins);
   const StageRecord record{scan->stages, context().cpu_times};
   const StageClock clock(record, "sight");
-  scan->image = SightImage(points, config_.min_range_m);
+  scan->image = SightImage(points, config_.min_range_m, origins);
+  scan->origins = origins;
   scan->map_from_sensor = map_from_sensor;
   scan->points_m.reserve(points.size());
   for (const Point& point : points) scan->points_m.emplace_back(point.x, point.y, point.z);
@@ -129,14 +131,16 @@ void WholeTracks::look_at_next() {
       positions_m.push_back(map_from_sensor * point);
     }
     const std::vector<Look> looks = looks_at(scan);
-    current.clusters = find_clusters({current.seen.points_m, positions_m, current.proposed,
-                                      config_.min_range_m, config_.max_range_m},
-                                     looks, pool());
+    current.clusters =
+        find_clusters({current.seen.points_m, positions_m, current.proposed, config_.min_range_m,
+                       config_.max_range_m, current.seen.origins},
+                      looks, pool());
     current.result.judged = !looks.empty();
   }
   const StageClock clock(record, "tracks");
   current.tracks = tracks_.enter(scan, current.clusters);
   release_memory(current.seen.points_m);
+  release_memory(current.seen.origins.of_point);
   release_memory(current.proposed);
   for (Cluster& cluster : current.clusters) release_memory(cluster.cells);
   const std::uint32_t reach = offsets_.back();

@@ -18,6 +18,7 @@ struct SeenScan final : NumberedScan {
   std::unique_ptr<Observed> proposing;  ///< as the method that proposes observed it
   std::vector<Eigen::Vector3f> points_m;
   Pose map_from_sensor = Pose::Identity();
+  RayOrigins origins;
   SightImage image;
   std::vector<StageTime> stages;
 };
@@ -67,7 +68,7 @@ class WholeTracks final : public ScanMethod<SeenScan> {
   };
 
   std::unique_ptr<SeenScan> see(std::span<const Point> points, const Pose& map_from_sensor,
-                                ThreadPool& pool) override;
+                                const RayOrigins& origins, ThreadPool& pool) override;
   std::vector<LabelledScan> enter(SeenScan& scan) override;
   std::vector<LabelledScan> release() override;
 

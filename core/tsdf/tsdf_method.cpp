@@ -27,7 +27,8 @@ TsdfMethod::TsdfMethod(const Config& config, const RunContext& context, Wants wa
     : ScanMethod(context), config_(config), wants_(wants), sensor_(configured_sensor(config)) {}
 
 std::unique_ptr<ObservedScan> TsdfMethod::see(std::span<const Point> points, const Pose& pose,
-                                              ThreadPool& pool) {
+                                              const RayOrigins& origins, ThreadPool& pool) {
+  expect_one_origin(origins);
   auto current = std::make_unique<ObservedScan>();
   const StageRecord record{current->stages, context().cpu_times};
   const VoxelGrid around =

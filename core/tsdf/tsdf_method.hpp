@@ -58,7 +58,7 @@ class TsdfMethod : public ScanMethod<ObservedScan> {
   virtual MemoryUse map_memory() const = 0;
 
   std::unique_ptr<ObservedScan> see(std::span<const Point> points, const Pose& map_from_sensor,
-                                    ThreadPool& pool) final;
+                                    const RayOrigins& origins, ThreadPool& pool) final;
   std::vector<LabelledScan> enter(ObservedScan& scan) final;
   void cast(std::span<const Point> points, ObservedScan& observed, ThreadPool& pool);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "core/base/multiarch.hpp"
@@ -256,6 +257,21 @@ void cast_all(const Rays& rays, const Start& sensor, RayWindow& window) {
   cast_lanes(rest.data(), sensor, window);
 }
 
+/// Returns a box around every voxel that rays of some sources visit.
+RayBounds bounds_around(std::span<const RaySource> sources) {
+  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
+  RayBounds all{{kMost, kMost, kMost}, {-kMost, -kMost, -kMost}};
+  for (const RaySource& source : sources) {
+    const RayBounds own = bounds_of(source);
+    const Start sensor{source.sensor.x, source.sensor.y, source.sensor.z};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      all.low[axis] = std::min(all.low[axis], sensor[axis] + own.low[axis]);
+      all.high[axis] = std::max(all.high[axis], sensor[axis] + own.high[axis]);
+    }
+  }
+  return all;
+}
+
 }  // namespace
 
 std::int32_t longest_side(const Ray& ray) {
@@ -309,19 +325,24 @@ std::size_t RaycastScratch::memory_bytes() const {
   return bytes;
 }
 
-VoxelList raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
-                  double max_range_m, RaycastScratch& scratch, ThreadPool& pool) {
-  if (measured.block_count() == 0) return {};
-  const RaySource source{measured, sensor, voxel_size_m, max_range_m};
-  const RayBounds bounds = bounds_of(source);
-  const Start sensor_index{sensor.x, sensor.y, sensor.z};
-  Start first_block{}, start{};
+std::vector<RaySource> ray_sources(const VoxelizedScan& scan, double voxel_size_m,
+                                   double max_range_m) {
+  std::vector<RaySource> sources;
+  scan.for_each_origin([&](const auto&, const Voxel& sensor, const VoxelSet& measured) {
+    sources.push_back({measured, sensor, voxel_size_m, max_range_m});
+  });
+  return sources;
+}
+
+VoxelList raycast(std::span<const RaySource> sources, RaycastScratch& scratch, ThreadPool& pool) {
+  if (sources.empty() || sources.front().measured.block_count() == 0) return {};
+  const RayBounds bounds = bounds_around(sources);
+  Start first_block{};
   std::array<int, 3> log2_tiles{};
   bool window_fits_lanes = true;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    first_block[axis] = (sensor_index[axis] + bounds.low[axis]) >> 3;
-    start[axis] = sensor_index[axis] - first_block[axis] * kBlockSide;
-    const std::int32_t highest = start[axis] + bounds.high[axis];
+    first_block[axis] = bounds.low[axis] >> 3;
+    const std::int32_t highest = bounds.high[axis] - first_block[axis] * kBlockSide;
     log2_tiles[axis] = static_cast<int>(
         std::bit_width(static_cast<std::uint32_t>(highest / RayWindow::kTileSide)));
     window_fits_lanes = window_fits_lanes && highest <= kMaxLaneCoordinate;
@@ -335,8 +356,13 @@ VoxelList raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_si
   const std::size_t shares = pool.size() == 1 ? 1 : std::size_t{4} * pool.size();
   pool.for_ranges(shares, 1, [&](std::size_t share, std::size_t, unsigned thread) {
     Rays& rays = scratch.rays[thread];
-    collect_rays(source, {share, shares}, short_limit, rays);
-    cast_all(rays, start, scratch.windows[thread]);
+    for (const RaySource& source : sources) {
+      const Start start{source.sensor.x - first_block[0] * kBlockSide,
+                        source.sensor.y - first_block[1] * kBlockSide,
+                        source.sensor.z - first_block[2] * kBlockSide};
+      collect_rays(source, {share, shares}, short_limit, rays);
+      cast_all(rays, start, scratch.windows[thread]);
+    }
   });
   return collect(scratch.windows, {first_block[0], first_block[1], first_block[2]}, pool);
 }

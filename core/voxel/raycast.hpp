@@ -3,11 +3,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/base/thread_pool.hpp"
 #include "core/voxel/ray_window.hpp"
 #include "core/voxel/voxel_set.hpp"
+#include "core/voxel/voxelize.hpp"
 
 namespace mosbench {
 
@@ -83,9 +85,12 @@ struct RaycastScratch {
 /// = max(d) and an error e = M / 2 per axis, a line has M + 1 voxels; after each of them, per axis:
 ///   e -= d;  if (e < 0) { e += M; q moves by one towards v; }
 /// Below, the same in closed form (Line), eight lines at a time. `max_range_m / voxel_size_m` must
-/// not exceed kMaxRangeVoxels.
-VoxelList raycast(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
-                  double max_range_m, RaycastScratch& scratch, ThreadPool& pool);
+/// not exceed kMaxRangeVoxels. Each source has a sensor of its own; their voxels are united.
+VoxelList raycast(std::span<const RaySource> sources, RaycastScratch& scratch, ThreadPool& pool);
+
+/// Returns the sources of a scan: one for each place that its rays start at.
+std::vector<RaySource> ray_sources(const VoxelizedScan& scan, double voxel_size_m,
+                                   double max_range_m);
 
 /// Longest range in voxels; the window around it must stay addressable.
 inline constexpr double kMaxRangeVoxels = 1500;

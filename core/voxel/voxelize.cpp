@@ -22,7 +22,8 @@ constexpr std::int32_t kNonfinite = kTooNear + 1;
 constexpr std::int32_t kOverflow = kTooNear + 2;
 
 struct Projection {
-  double rotation[9], translation[3], origin[3], sensor_voxel[3];
+  double rotation[9], translation[3], origin[3];
+  double sensor_m[3], sensor_voxel[3];  ///< where the rays start
   double voxel_size_m, min_range_sq_m2;
 };
 
@@ -65,6 +66,7 @@ inline __attribute__((always_inline)) void project_four(const Point* points,
   const double* r = projection.rotation;
   const double* t = projection.translation;
   const double* s = projection.sensor_voxel;
+  const double* o = projection.sensor_m;
   const auto p0 = load<Floats>(points), p1 = load<Floats>(points + 1),
              p2 = load<Floats>(points + 2), p3 = load<Floats>(points + 3);
   const Floats xy01 = __builtin_shufflevector(p0, p1, 0, 4, 1, 5);
@@ -78,7 +80,7 @@ inline __attribute__((always_inline)) void project_four(const Point* points,
   const Doubles px = ((r[0] * x + r[1] * y) + r[2] * z) + t[0];
   const Doubles py = ((r[3] * x + r[4] * y) + r[5] * z) + t[1];
   const Doubles pz = ((r[6] * x + r[7] * y) + r[8] * z) + t[2];
-  const Doubles dx = px - t[0], dy = py - t[1], dz = pz - t[2];
+  const Doubles dx = px - o[0], dy = py - o[1], dz = pz - o[2];
   const Doubles range_sq_m2 = (dx * dx + dy * dy) + dz * dz;
   const Doubles vx = floor_of(px / projection.voxel_size_m) - projection.origin[0];
   const Doubles vy = floor_of(py / projection.voxel_size_m) - projection.origin[1];
@@ -121,14 +123,25 @@ struct Part {
   std::size_t nonfinite_points = 0;
 };
 
-void fill(Part& part, std::span<const Point> points, const Projection& projection,
-          std::span<std::uint32_t> voxel_of_point) {
+/// Returns how many points from `begin` on have its origin.
+std::size_t of_one_origin(const RayOrigins& origins, std::size_t begin, std::size_t most) {
+  if (origins.empty()) return most;
+  const auto first = origins.of_point.begin() + static_cast<std::ptrdiff_t>(begin);
+  const auto is_other = [&](std::uint8_t origin) { return origin != *first; };
+  return static_cast<std::size_t>(
+      std::find_if(first, first + static_cast<std::ptrdiff_t>(most), is_other) - first);
+}
+
+/// `projections` has one for each origin.
+void fill(Part& part, std::span<const Point> points, std::span<const Projection> projections,
+          const RayOrigins& origins, std::span<std::uint32_t> voxel_of_point) {
   ProjectedChunk chunk;
   BlockIndex last_block{std::numeric_limits<std::int32_t>::max(), 0, 0};
   std::uint32_t slot = kNoSlot;
-  for (std::size_t begin = part.begin; begin < part.end; begin += kChunk) {
-    const std::size_t count = std::min(kChunk, part.end - begin);
-    project(points.subspan(begin, count), projection, chunk);
+  for (std::size_t begin = part.begin, count = 0; begin < part.end; begin += count) {
+    count = of_one_origin(origins, begin, std::min(kChunk, part.end - begin));
+    const std::size_t origin = origins.empty() ? 0 : origins.of_point[begin];
+    project(points.subspan(begin, count), projections[origin], chunk);
     for (std::size_t i = 0; i < count; ++i) {
       if (chunk.x[i] <= kOverflow) {
         if (chunk.x[i] == kOverflow) throw_overflow(begin + i);
@@ -166,6 +179,44 @@ void merge(std::vector<Part>& parts, std::span<std::uint32_t> voxel_of_point) {
       if (voxel == kNoVoxel) continue;
       voxel = slot_in_all[voxel / kBlockVoxels] * kBlockVoxels + voxel % kBlockVoxels;
     }
+  }
+}
+
+Projection projection_of(const Pose& map_from_sensor, const VoxelGrid& grid, double min_range_m) {
+  Projection projection{};
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      projection.rotation[row * 3 + column] = map_from_sensor(row, column);
+    }
+    projection.translation[row] = map_from_sensor.translation()[row];
+    projection.origin[row] = grid.origin_voxels[row];
+  }
+  projection.voxel_size_m = grid.voxel_size_m;
+  projection.min_range_sq_m2 = min_range_m * std::abs(min_range_m);
+  return projection;
+}
+
+/// The same for points whose rays start elsewhere.
+Projection seen_from(const Eigen::Vector3d& sensor_m, const Voxel& sensor_voxel,
+                     Projection projection) {
+  for (int axis = 0; axis < 3; ++axis) projection.sensor_m[axis] = sensor_m[axis];
+  projection.sensor_voxel[0] = sensor_voxel.x;
+  projection.sensor_voxel[1] = sensor_voxel.y;
+  projection.sensor_voxel[2] = sensor_voxel.z;
+  return projection;
+}
+
+/// Adds what each sensor measured to a scan whose points have voxels.
+void add_measured_by_origin(const RayOrigins& origins, VoxelizedScan& scan) {
+  for (OwnVoxels& own : scan.by_origin) {
+    own.measured = scan.measured;
+    std::ranges::fill(own.measured.masks, BlockMask{});
+  }
+  for (std::size_t i = 0; i < origins.of_point.size(); ++i) {
+    const std::uint32_t voxel = scan.voxel_of_point[i];
+    if (voxel == kNoVoxel) continue;
+    VoxelSet& measured = scan.by_origin[origins.of_point[i]].measured;
+    measured.masks[voxel / kBlockVoxels].set(voxel % kBlockVoxels);
   }
 }
 
@@ -208,23 +259,19 @@ Voxel voxel_of(const Eigen::Vector3d& position_m, const VoxelGrid& grid) {
 
 VoxelizedScan voxelize(std::span<const Point> points, const Pose& map_from_sensor,
                        const VoxelGrid& grid, double min_range_m, double max_range_m,
-                       ThreadPool& pool) {
+                       ThreadPool& pool, const RayOrigins& origins) {
   VoxelizedScan scan;
   scan.sensor_m = map_from_sensor.translation();
   scan.sensor_voxel = voxel_of(scan.sensor_m, grid);
-  Projection projection{};
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      projection.rotation[row * 3 + column] = map_from_sensor(row, column);
-    }
-    projection.translation[row] = scan.sensor_m[row];
-    projection.origin[row] = grid.origin_voxels[row];
+  for (const Eigen::Vector3d& position : origins.positions_m) {
+    const Eigen::Vector3d sensor_m = map_from_sensor * position;
+    scan.by_origin.push_back({sensor_m, voxel_of(sensor_m, grid), {}});
   }
-  projection.sensor_voxel[0] = scan.sensor_voxel.x;
-  projection.sensor_voxel[1] = scan.sensor_voxel.y;
-  projection.sensor_voxel[2] = scan.sensor_voxel.z;
-  projection.voxel_size_m = grid.voxel_size_m;
-  projection.min_range_sq_m2 = min_range_m * std::abs(min_range_m);
+  std::vector<Projection> projections;
+  scan.for_each_origin([&](const auto& sensor_m, const Voxel& sensor_voxel, const VoxelSet&) {
+    projections.push_back(
+        seen_from(sensor_m, sensor_voxel, projection_of(map_from_sensor, grid, min_range_m)));
+  });
 
   scan.voxel_of_point.resize(points.size());
   std::vector<Part> parts(pool.size());
@@ -234,17 +281,21 @@ VoxelizedScan voxelize(std::span<const Point> points, const Pose& map_from_senso
   }
   pool.for_ranges(parts.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t p = begin; p < end; ++p) {
-      fill(parts[p], points, projection, scan.voxel_of_point);
+      fill(parts[p], points, projections, origins, scan.voxel_of_point);
     }
   });
   merge(parts, scan.voxel_of_point);
   for (const Part& part : parts) scan.nonfinite_points += part.nonfinite_points;
   scan.measured = std::move(parts.front().voxels);
 
+  add_measured_by_origin(origins, scan);
   for (std::size_t slot = 0; slot < scan.measured.block_count(); ++slot) {
-    scan.occupied.push_back(within_range(grid, scan.measured.blocks[slot],
-                                         scan.measured.masks[slot], scan.sensor_m, max_range_m));
-    scan.occupied_count += scan.occupied.back().count();
+    BlockMask& occupied = scan.occupied.emplace_back();
+    scan.for_each_origin([&](const auto& sensor_m, const Voxel&, const VoxelSet& measured) {
+      occupied = occupied | within_range(grid, measured.blocks[slot], measured.masks[slot],
+                                         sensor_m, max_range_m);
+    });
+    scan.occupied_count += occupied.count();
   }
   return scan;
 }

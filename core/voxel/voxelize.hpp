@@ -14,6 +14,13 @@ namespace mosbench {
 /// Number of a voxel inside a VoxelizedScan: slot of its block * 512 + cell.
 inline constexpr std::uint32_t kNoVoxel = ~std::uint32_t{0};
 
+/// What one of several sensors measured of a scan; `measured` has all blocks of the scan.
+struct OwnVoxels {
+  Eigen::Vector3d sensor_m;
+  Voxel sensor_voxel;
+  VoxelSet measured;
+};
+
 /// A scan as sets of voxels. `occupied` runs together with `measured.blocks`.
 struct VoxelizedScan {
   Eigen::Vector3d sensor_m = Eigen::Vector3d::Zero();  ///< in the map frame
@@ -23,7 +30,14 @@ struct VoxelizedScan {
   std::vector<std::uint32_t> voxel_of_point;  ///< kNoVoxel for points that do not take part
   std::size_t occupied_count = 0;
   std::size_t nonfinite_points = 0;
+  std::vector<OwnVoxels> by_origin;  ///< empty: all rays start at sensor_m
 
+  /// Calls visit(sensor_m, sensor_voxel, measured) for each place that rays start at.
+  template <typename Visit>
+  void for_each_origin(Visit&& visit) const {
+    if (by_origin.empty()) visit(sensor_m, sensor_voxel, measured);
+    for (const OwnVoxels& own : by_origin) visit(own.sensor_m, own.sensor_voxel, own.measured);
+  }
   const BlockMask* occupied_in(const BlockIndex& block) const {
     const std::uint32_t slot = measured.find(block);
     return slot == kNoSlot ? nullptr : &occupied[slot];
@@ -31,7 +45,9 @@ struct VoxelizedScan {
   /// Returns the voxels of a set that are occupied.
   VoxelSet occupied_among(const VoxelSet& voxels) const;
   std::size_t memory_bytes() const {
-    return measured.memory_bytes() + occupied.capacity() * sizeof(BlockMask) +
+    std::size_t own_bytes = 0;
+    for (const OwnVoxels& own : by_origin) own_bytes += own.measured.memory_bytes();
+    return own_bytes + measured.memory_bytes() + occupied.capacity() * sizeof(BlockMask) +
            voxel_of_point.capacity() * sizeof(std::uint32_t);
   }
 };
@@ -40,12 +56,12 @@ struct VoxelizedScan {
 VoxelGrid grid_around(const Eigen::Vector3d& sensor_m, double voxel_size_m);
 
 /// Finds the measured voxels P'_M = floor(P_M / Delta) of P_M = T_{M->S} P_S (paper, III). Takes
-/// the points farther than min_range from the sensor; a negative min_range takes all. Throws
-/// std::range_error naming the first point whose voxel lies more than 2^19 voxels from the sensor's
-/// or 2^23 from the grid's origin.
+/// the points farther than min_range from their sensor; a negative min_range takes all. Throws
+/// std::range_error naming the first point whose voxel lies more than 2^19 voxels from its sensor's
+/// or 2^23 from the grid's origin. `origins` were checked.
 VoxelizedScan voxelize(std::span<const Point> points, const Pose& map_from_sensor,
                        const VoxelGrid& grid, double min_range_m, double max_range_m,
-                       ThreadPool& pool);
+                       ThreadPool& pool, const RayOrigins& origins = {});
 
 /// Returns the voxel that holds a position of the map frame. Throws std::range_error beyond 2^23
 /// voxels from the grid's origin.

@@ -118,6 +118,19 @@ struct Target {
   WriteOptions writing;
 };
 
+/// How a layout keeps no origins of rays.
+constexpr std::string_view kLostOrigins =
+    "rays of all points start at the first LiDAR, as the copy does not keep which are whose: of ";
+
+/// Returns what is doubtful about the poses, and about the copy of a rig.
+std::vector<std::string> doubts_to_keep(const Sequence& sequence) {
+  std::vector<std::string> doubts = doubts_that_stay(sequence.recording().doubts, sequence);
+  if (const std::string& lidars = sequence.reading().lidars; !lidars.empty()) {
+    doubts.push_back(fmt::format("{}{}", kLostOrigins, lidars));
+  }
+  return doubts;
+}
+
 /// Returns the mark of what is made of a sequence.
 DataMark new_mark(const Sequence& sequence, DatasetKind layout) {
   DataMark mark = mark_as_read(sequence);
@@ -199,12 +212,13 @@ void write_shared_files(const Dataset& dataset, const LayoutWriter& writer,
 struct LostContent {
   KeptTruth keeps = KeptTruth::kId;
   std::size_t unlabelled_points = 0, labelled_scans = 0, points_beyond_view = 0;
-  std::size_t radial_velocities = 0, stamps = 0;
+  std::size_t radial_velocities = 0, stamps = 0, rig_scans = 0;
 
   void add(const Frame& frame) {
     static const CameraView kView = written_kitti_mounting().view;
     radial_velocities += frame.radial_velocity_m_s.size();
     if (frame.stamp_ns) ++stamps;
+    if (!frame.origins.empty()) ++rig_scans;
     if (!frame.truth) return;
     ++labelled_scans;
     for (std::size_t i = 0; i < frame.points.size(); ++i) {
@@ -223,6 +237,11 @@ struct LostContent {
       sentences.push_back(
           fmt::format("the radial velocities of {} are left out: layout {} has none",
                       counted(radial_velocities, "point"), layout.name));
+    }
+    if (rig_scans > 0) {
+      sentences.push_back(fmt::format(
+          "{} merged of several LiDARs: in the copy, rays of all points start at the first",
+          counted(rig_scans, "scan was", "scans were")));
     }
     if (stamps > 0 && !layout.writer->keeps_stamps) {
       sentences.push_back(lost_stamps_text(stamps, layout));
@@ -319,7 +338,7 @@ std::vector<std::string> convert(
       const auto files = writer.open(options.out / targets[i].folder, targets[i].writing);
       convert_sequence(sequence, *files, lost, advance);
       write_pose_origin(pose_file, pose_origin_of(sequence.reading().poses),
-                        doubts_that_stay(sequence.recording().doubts, sequence));
+                        doubts_to_keep(sequence));
     }
     unfinished.finish();
   } catch (...) {

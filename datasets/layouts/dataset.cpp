@@ -11,11 +11,10 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/convert.hpp"
+#include "datasets/layouts/corrections.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/perturb/perturbation.hpp"
-#include "datasets/sequence/corrected_sequence.hpp"
-#include "datasets/sequence/ego_points.hpp"
 #include "datasets/sequence/pose_mark.hpp"
 #include "datasets/sequence/scan_range.hpp"
 #include "datasets/sequence/simulated_origin.hpp"
@@ -139,52 +138,14 @@ ListedSequences list_sequences(const std::filesystem::path& path, const OpenOpti
     throw DataError(path, "holds part of a data set (mosbench convert was stopped)",
                     "the same command to be run to its end");
   }
-  const Layout& layout = options.kind ? layout_of(*options.kind) : recognise(path, remarks);
+  const bool is_recording = !options.kind && options.reading.lidars;
+  const Layout& layout = is_recording   ? layout_of(DatasetKind::kRecording)
+                         : options.kind ? layout_of(*options.kind)
+                                        : recognise(path, remarks);
   auto found = layout.list(path);
+  if (holds_lidars(path, options.reading)) found = {{folder_name(path), path, ""}};
   if (found.empty()) throw DataError(path, "holds no sequence", std::string(layout.expected));
   return {layout, keep_named(std::move(found), options.sequences)};
-}
-
-/// Returns how points are to be moved; nothing unless they have times.
-std::optional<Deskew> deskew_of(const Sequence& sequence, const Reading& reading) {
-  const ReadingDone& done = sequence.reading();
-  const Deskew by = reading.deskew.value_or(Deskew::kPoses);
-  const bool has_times = reading.point_times == PointTimes::kAzimuth || by == Deskew::kVelocity ||
-                         (!done.point_times.empty() && !done.undistortion);
-  return by != Deskew::kNone && has_times ? std::optional(by) : std::nullopt;
-}
-
-/// Whether the poses that deskew are yet to be refined. Disturbed ones, which are, do not deskew.
-bool deskews_by_refined_poses(const Reading& reading) {
-  return reading.refine_poses && !reading.perturb;
-}
-
-/// The sequence with the times of its points, and deskewed by them unless its poses are found
-/// later.
-std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
-                                           const Reading& reading) {
-  if (!reading.undistorts()) return sequence;
-  const ReadingDone& done = sequence->reading();
-  if (reading.deskew && !reading.point_times && done.point_times.empty() && !done.undistortion) {
-    throw UsageError(fmt::format("{}: the points of {} have no times, expected {} or azimuth",
-                                 option("deskew"), sequence->name(),
-                                 option("point_times", "column")));
-  }
-  if (reading.point_times == PointTimes::kAzimuth) {
-    sequence = with_azimuth_times(std::move(sequence));
-  }
-  const bool later = reading.is_by_odometry() || deskews_by_refined_poses(reading);
-  const std::optional<Deskew> by = deskew_of(*sequence, reading);
-  return later || !by ? std::move(sequence) : deskewed(std::move(sequence), *by);
-}
-
-/// The sequence without what is to be left out, and with the points moved that are to be.
-std::unique_ptr<Sequence> corrected(std::unique_ptr<Sequence> sequence, const Reading& reading) {
-  if (reading.drop_scans == Drop::kAuto) sequence = without_useless_scans(std::move(sequence));
-  if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
-  // What is mounted stays in the frame in which points were measured.
-  if (reading.drop_ego == Drop::kAuto) sequence = without_ego(std::move(sequence));
-  return with_point_times(std::move(sequence), reading);
 }
 
 /// The file of a sequence's poses in a folder as `mosbench odometry` and `run --odometry` write it.
@@ -248,6 +209,7 @@ void check_asked(const Reading& asked, const Layout& layout,
     throw UsageError(option("refine_poses") +
                      ": corrects poses that are given, expected it without odometry");
   }
+  check_lidars(asked, layout.kind() == DatasetKind::kRecording);
   if (asked.moving_speed_m_s && !layout.truth_by_speed) {
     throw UsageError(fmt::format(
         "{}: the truth of {} is no speed, expected a data set of scene flow, as opensceneflow, or "

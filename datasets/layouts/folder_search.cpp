@@ -76,6 +76,13 @@ bool any_holds(const std::vector<SequenceFolder>& sequences, const char* file) {
   });
 }
 
+bool holds_lidars(const std::filesystem::path& folder, const Reading& asked) {
+  if (!asked.lidars) return false;
+  const std::string first = lidar_names(asked).front();
+  // A topic is no folder, though one of its name may be at the root of the disk.
+  return !first.starts_with('/') && std::filesystem::is_directory(folder / first);
+}
+
 std::string recording_without_times(const std::filesystem::path& recording) {
   if (is_scan(recording)) {
     return recording.string() + " is one scan, expected several to find a motion from";

@@ -21,6 +21,9 @@ std::string folder_name(const std::filesystem::path& path);
 /// Whether a path is a file that is named as a scan.
 bool is_scan(const std::filesystem::path& path);
 
+/// Whether a folder holds that of the first of the LiDARs that were asked for.
+bool holds_lidars(const std::filesystem::path& folder, const Reading& asked);
+
 /// Returns the folder that a sequence folder is in.
 std::filesystem::path parent_folder(const std::filesystem::path& path);
 

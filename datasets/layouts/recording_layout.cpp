@@ -6,19 +6,24 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "datasets/disk/files.hpp"
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/bin_file.hpp"
+#include "datasets/formats/mounts_file.hpp"
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/rosbag/bag_reader.hpp"
+#include "datasets/rosbag/bag_rig.hpp"
 #include "datasets/rosbag/bag_sequence.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/sequence/rig_sequence.hpp"
 #include "datasets/sequence/sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -121,19 +126,71 @@ std::vector<SequenceFolder> list_recording(const std::filesystem::path& path) {
   return sequences;
 }
 
+/// Returns where a LiDAR is mounted. Throws DataError naming `file` for one that has no row.
+Pose mount_of(const std::map<std::string, Pose>& mounts, const std::string& name,
+              const std::filesystem::path& file) {
+  const auto mount = mounts.find(name);
+  if (mount == mounts.end()) throw DataError(file, "has no row of " + name, "one for each LiDAR");
+  return mount->second;
+}
+
+/// Opens folders of scans as one RigSequence, or the one folder.
+std::unique_ptr<Sequence> open_folder_lidars(const SequenceFolder& sequence, const Reading& asked) {
+  const std::vector<std::string> names = lidar_names(asked);
+  const std::filesystem::path file = sequence.folder / kMountsFile;
+  const auto mounts = names.size() > 1
+                          ? parse_mounts(read_file(file), file)
+                          : std::map<std::string, Pose>{{names.front(), Pose::Identity()}};
+  std::vector<RigLidar> lidars;
+  for (const std::string& name : names) {
+    const std::filesystem::path folder = sequence.folder / name;
+    if (!std::filesystem::is_directory(folder)) {
+      throw DataError(folder, "is no folder", "the scans of a LiDAR");
+    }
+    const std::filesystem::path shared = sequence.folder / "poses.txt";
+    Reading reading = lidars.empty() ? asked : without_poses(asked);
+    if (reading.has_own_poses() && !is_there(folder / "poses.txt") && is_there(shared)) {
+      reading.poses = PoseFile{shared};
+    }
+    const std::string_view scan_folder = scans_in(folder).empty() ? "" : ".";
+    const Pose first_from_this =
+        mount_of(mounts, names.front(), file).inverse() * mount_of(mounts, name, file);
+    lidars.push_back(
+        {name,
+         std::make_unique<KittiSequence>(sequence.name, folder, reading,
+                                         SequenceLayout{.folder = {.scan_folder = scan_folder}}),
+         first_from_this});
+  }
+  if (lidars.size() == 1) return std::move(lidars.front().sequence);
+  return std::make_unique<RigSequence>(std::move(lidars), std::vector{file});
+}
+
+/// Returns the parts that a recording was found as, none where it is one bag.
+std::optional<BagParts> parts_of(const SequenceFolder& sequence) {
+  const auto& path = sequence.folder;
+  if (sequence.alias.empty()) return std::nullopt;
+  auto bags = group_parts(bags_of(path.parent_path()));
+  const auto parts =
+      std::ranges::find_if(bags, [&](const BagParts& bag) { return bag.files.front() == path; });
+  if (parts == bags.end()) throw DataError(path, "changed while it was read", "a whole recording");
+  return std::move(*parts);
+}
+
 std::unique_ptr<Sequence> open_recording(const SequenceFolder& sequence, const Reading& asked) {
   const auto& path = sequence.folder;
-  if (!sequence.alias.empty()) {
-    const auto bags = group_parts(bags_of(path.parent_path()));
-    const auto parts =
-        std::ranges::find_if(bags, [&](const BagParts& bag) { return bag.files.front() == path; });
-    if (parts == bags.end())
-      throw DataError(path, "changed while it was read", "a whole recording");
-    auto drive = std::make_unique<BagSequence>(sequence.name, open_bag(*parts), asked);
-    if (!parts->doubt.empty()) drive->add_doubt(parts->doubt);
+  if (!sequence.alias.empty() || is_bag(path)) {
+    const auto parts = parts_of(sequence);
+    const auto open = [&] { return parts ? open_bag(*parts) : open_bag(path); };
+    std::unique_ptr<Sequence> drive;
+    if (asked.lidars) {
+      drive = open_bag_lidars(sequence.name, open, asked);
+    } else {
+      drive = std::make_unique<BagSequence>(sequence.name, open(), asked);
+    }
+    if (parts && !parts->doubt.empty()) drive->add_doubt(parts->doubt);
     return drive;
   }
-  if (is_bag(path)) return std::make_unique<BagSequence>(sequence.name, path, asked);
+  if (asked.lidars) return open_folder_lidars(sequence, asked);
   if (is_scan(path)) return std::make_unique<SingleScan>(sequence.name, path, asked);
   return std::make_unique<KittiSequence>(sequence.name, path, asked,
                                          SequenceLayout{.folder = {.scan_folder = "."}});

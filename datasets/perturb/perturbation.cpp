@@ -112,6 +112,18 @@ std::uint64_t word_of(std::string_view name) {
   return word;
 }
 
+/// Moves the returns of a rig by their origins, to or from their own sensors.
+void shift_by_origins(double sign, Frame& frame) {
+  if (frame.origins.empty()) return;
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    Point& p = frame.points[i];
+    if (!is_return(p)) continue;
+    const Eigen::Vector3d at = position_of(p) + sign * frame.origins.at(i);
+    p = {static_cast<float>(at.x()), static_cast<float>(at.y()), static_cast<float>(at.z()),
+         p.intensity};
+  }
+}
+
 class PerturbedSequence : public SequenceAround {
  public:
   PerturbedSequence(std::unique_ptr<Sequence> inner, const Perturbation& perturbation)
@@ -135,7 +147,10 @@ class PerturbedSequence : public SequenceAround {
   void read(std::size_t scan_index, Frame& frame) const override {
     const std::size_t source = sources_.at(scan_index);
     inner().read(source, frame);
+    // Ranges and directions are those from the sensor that measured a point.
+    shift_by_origins(-1, frame);
     for (const ChangePoints& change : changes_) change(source, frame);
+    shift_by_origins(1, frame);
     frame.map_from_sensor = map_from_sensor(scan_index);
     frame.stamp_ns = stamp_ns(scan_index);
   }

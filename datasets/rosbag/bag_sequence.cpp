@@ -53,7 +53,7 @@ BagSequence::BagSequence(std::string name, std::unique_ptr<const BagReader> bag,
                          const Reading& asked)
     : bag_(std::move(bag)),
       undistorts_(asked.undistorts()),
-      keeps_times_(asked.is_by_odometry() || asked.deskew == Deskew::kVelocity),
+      keeps_times_(asked.is_by_odometry() || asked.deskew == Deskew::kVelocity || asked.is_rig()),
       has_stamped_points_(keeps_times_ || !asked.has_own_poses()),
       by_azimuth_(asked.point_times == PointTimes::kAzimuth) {
   Recording& recording = mutable_recording();

@@ -335,7 +335,9 @@ std::string cloud_topic(const BagReader& bag, const std::optional<std::string>& 
   if (topics.contains(std::string(kDoalsTopic))) return std::string(kDoalsTopic);
   if (topics.size() == 1) return *topics.begin();
   throw DataError(bag.path(), "holds several PointCloud2 topics: " + listed(topics),
-                  "one of them in " + option("topic"));
+                  fmt::format("one of them, {}, or two to six of a rig, which are merged: {}",
+                              option("topic", *topics.begin()),
+                              option("lidars", fmt::format("{}", fmt::join(topics, ",")))));
 }
 
 BagTransforms bag_transforms(const BagReader& bag, const Reading& asked,

@@ -49,6 +49,21 @@ std::int64_t median_interval_ns(const std::vector<ScanEntry>& scans) {
   return is_turn ? static_cast<std::int64_t>(median_ns) : kUsualTurn_ns;
 }
 
+/// Moves the origins of the sensors other than the first to where these were when they measured
+/// their first points. Returns false where a pose is missing.
+bool move_origins(Frame& frame, std::int64_t stamp_ns, const PoseAt& pose_at) {
+  std::vector<Eigen::Vector3d>& origins = frame.origins.positions_m;
+  for (std::size_t sensor = 1; sensor < origins.size(); ++sensor) {
+    const auto first = std::ranges::find(frame.origins.of_point, sensor);
+    if (first == frame.origins.of_point.end()) continue;
+    const auto at = static_cast<std::size_t>(first - frame.origins.of_point.begin());
+    const auto here = pose_at(stamp_ns), there = pose_at(stamp_ns + frame.point_times_ns[at]);
+    if (!here || !there) return false;
+    origins[sensor] = here->inverse() * (*there * origins[sensor]);
+  }
+  return true;
+}
+
 /// A sequence whose frames are changed after they are read.
 class ChangedSequence : public SequenceAround {
  public:
@@ -110,12 +125,13 @@ std::optional<ScanDeskewer::Motion> ScanDeskewer::motion_at(std::size_t scan_ind
   return Motion{poses_[scan_index], poses_[to - 1].inverse() * poses_[to], period_ns};
 }
 
-bool ScanDeskewer::move_by(std::size_t scan_index, Frame& frame) const {
+bool ScanDeskewer::move_by(Deskew by, std::size_t scan_index, Frame& frame) const {
   const std::int64_t stamp_ns = stamps_ns_[scan_index];
   const auto moves = [&](const PoseAt& pose_at) {
-    return undistort(frame.points, frame.point_times_ns, stamp_ns, stamp_ns, pose_at);
+    return undistort(frame.points, frame.point_times_ns, stamp_ns, stamp_ns, pose_at) &&
+           move_origins(frame, stamp_ns, pose_at);
   };
-  if (by_ == Deskew::kPoses) {
+  if (by == Deskew::kPoses) {
     return moves([&](std::int64_t at_ns) { return tracks_.around(scan_index).at(at_ns); });
   }
   const std::optional<Motion> motion = motion_at(scan_index);
@@ -127,10 +143,14 @@ bool ScanDeskewer::move_by(std::size_t scan_index, Frame& frame) const {
 }
 
 void ScanDeskewer::apply(std::size_t scan_index, Frame& frame) const {
-  if (by_ == Deskew::kNone || frame.point_times_ns.empty()) return;
-  std::vector<Point> as_measured = frame.points;
-  if (!move_by(scan_index, frame)) {
-    frame.points = std::move(as_measured);
+  const bool is_rig = !frame.origins.empty();
+  if ((by_ == Deskew::kNone && !is_rig) || frame.point_times_ns.empty() || poses_.empty()) return;
+  const std::vector<Point> as_measured = frame.points;
+  bool is_moved = move_by(by_ == Deskew::kNone ? Deskew::kPoses : by_, scan_index, frame);
+  if (!is_moved) frame.points = as_measured;
+  if (!is_moved && is_rig) is_moved = move_by(Deskew::kVelocity, scan_index, frame);
+  if (!is_moved) {
+    frame.points = as_measured;
     return;
   }
   // Moved, a missing return would be one near the sensor.

@@ -33,7 +33,8 @@ class ScanDeskewer {
   ScanDeskewer(Deskew by, const std::vector<ScanEntry>& scans);
 
   /// Moves the returns of a frame that has their times, and drops the times. Where the poses do not
-  /// cover the times (of the first or last scan), the frame stays as it is.
+  /// cover the times (of the first or last scan), the frame stays as it is. That of a rig is always
+  /// moved, with its origins: there by the motion since the scan before.
   void apply(std::size_t scan_index, Frame& frame) const;
 
  private:
@@ -42,7 +43,7 @@ class ScanDeskewer {
     std::int64_t period_ns;
   };
   std::optional<Motion> motion_at(std::size_t scan_index) const;
-  bool move_by(std::size_t scan_index, Frame& frame) const;
+  bool move_by(Deskew by, std::size_t scan_index, Frame& frame) const;
 
   Deskew by_ = Deskew::kNone;
   std::vector<Pose> poses_;

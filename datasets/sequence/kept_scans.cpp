@@ -11,7 +11,8 @@ std::size_t bytes_of(const PointMotions& motions) {
 }
 
 std::size_t bytes_of(const Frame& frame) {
-  return frame.points.size() * sizeof(Point) + frame.point_times_ns.size() * sizeof(std::int64_t) +
+  return frame.points.size() * sizeof(Point) + frame.origins.of_point.size() +
+         frame.point_times_ns.size() * sizeof(std::int64_t) +
          frame.radial_velocity_m_s.size() * sizeof(float) +
          (frame.motions ? bytes_of(*frame.motions) : 0) +
          (frame.truth ? frame.truth->size() * sizeof(std::uint32_t) : 0);
@@ -35,6 +36,7 @@ bool KeptScans::find(std::size_t scan_index, Frame& frame) const {
   frame.stem = scan.small.stem;
   frame.map_from_sensor = scan.small.map_from_sensor;
   frame.stamp_ns = scan.small.stamp_ns;
+  frame.origins = scan.small.origins;
   frame.motions = scan.small.motions;
   frame.radial_velocity_m_s = scan.small.radial_velocity_m_s;
   frame.points.assign(scan.points.begin(), scan.points.end());
@@ -49,12 +51,13 @@ void KeptScans::keep(std::size_t scan_index, const Frame& frame) {
   const std::size_t bytes = bytes_of(frame);
   if (bytes_ + bytes > most_bytes_ || scans_.contains(scan_index)) return;
   // Names all members, so that a new one is not forgotten here and in `find`.
-  const auto& [stem, points, map_from_sensor, stamp_ns, point_times_ns, motions,
+  const auto& [stem, points, map_from_sensor, stamp_ns, point_times_ns, origins, motions,
                radial_velocity_m_s, truth] = frame;
   Scan& scan = scans_[scan_index];
   scan.small.stem = stem;
   scan.small.map_from_sensor = map_from_sensor;
   scan.small.stamp_ns = stamp_ns;
+  scan.small.origins = origins;
   scan.small.motions = motions;
   scan.small.radial_velocity_m_s = radial_velocity_m_s;
   scan.points = copy(points);

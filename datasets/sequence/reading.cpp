@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
+
 namespace mosbench {
 namespace {
 
@@ -49,6 +52,19 @@ std::int64_t Reading::moved_ns(std::int64_t pose_ns) const {
   if (!is_beyond) return moved;
   return pose_ns < 0 ? std::numeric_limits<std::int64_t>::min()
                      : std::numeric_limits<std::int64_t>::max();
+}
+
+std::vector<std::string> lidar_names(const Reading& asked) {
+  constexpr std::size_t kMost = 6;
+  std::vector<std::string> names;
+  for (const std::string_view part : split_at_commas(asked.lidars.value_or(""))) {
+    if (part.empty() || names.size() == kMost || std::ranges::find(names, part) != names.end()) {
+      throw UsageError(fmt::format("{}: expected the names of one to six LiDARs, each once",
+                                   option("lidars", asked.lidars.value_or(""))));
+    }
+    names.emplace_back(part);
+  }
+  return names;
 }
 
 std::string to_string(const Perturbation& perturbation) {
@@ -103,6 +119,7 @@ ReadingMembers members_of(const ReadingDone& reading) {
   members.add("scans", reading.scans);
   members.add("drop_scans", reading.drop_scans);
   members.add("scan_files", reading.scan_files);
+  members.add("lidars", reading.lidars);
   if (reading.bin_columns) members.add("bin_columns", std::to_string(*reading.bin_columns));
   members.add("point_times", reading.point_times);
   members.add("stamps", reading.stamps);

@@ -107,6 +107,7 @@ struct Reading {
   double max_pose_gap_s = 0.5;
   double pose_offset_s = 0.0;  ///< added to the stamps of poses, to read them by the scans' clock
   std::optional<std::string> topic = std::nullopt;      ///< of a bag's PointCloud2
+  std::optional<std::string> lidars = std::nullopt;     ///< see `lidar_names`
   std::optional<std::string> map_frame = std::nullopt;  ///< of a bag's tf tree
   /// Of a bag's poses; searched when not set.
   std::optional<std::string> pose_topic = std::nullopt;
@@ -127,6 +128,8 @@ struct Reading {
   /// Disturbances of what is read.
   std::optional<Perturbation> perturb = std::nullopt;
 
+  /// Whether several LiDARs may be merged.
+  bool is_rig() const { return lidars && lidars->find(',') != std::string::npos; }
   /// Whether the times of points that scans hold are wanted by name.
   bool takes_column() const { return point_times && *point_times != PointTimes::kAzimuth; }
   /// Whether points with times are to be moved.
@@ -195,6 +198,9 @@ void visit_fields(Asked& reading, Visit&& visit) {
         FieldQuantity{"SECONDS", "time", "seconds", -kLongestOffset_s, true, kLongestOffset_s},
         "Added to the stamps of poses whose clock is not that of the scans");
   visit("topic", reading.topic, FieldText{"TOPIC"}, "PointCloud2 topic of a bag");
+  visit("lidars", reading.lidars, FieldText{"NAME,..."},
+        "Topics of a bag, or folders of scans beside mounts.txt: one LiDAR, or up to six that are "
+        "merged, the first of which gives stamps and poses");
   visit("map_frame", reading.map_frame, FieldText{"FRAME"}, "Map frame in the tf tree of a bag");
   visit("pose_topic", reading.pose_topic, FieldText{"TOPIC"},
         "Topic of poses of a bag (default: found)");
@@ -254,6 +260,7 @@ enum class BagUndistortion : std::uint8_t {
 struct ReadingDone {
   std::string scans = {};  ///< the range, and how many of how many these are
   std::string scan_files = {};
+  std::string lidars = {};                                ///< that are merged
   std::optional<std::size_t> bin_columns = std::nullopt;  ///< unless the usual
   std::string point_times = {};
   std::string stamps = {};  ///< their unit
@@ -267,6 +274,15 @@ struct ReadingDone {
 };
 
 std::string_view to_string(BagUndistortion undistortion);
+
+/// Returns the topics or folders of Reading::lidars. Throws UsageError unless these are one to six.
+std::vector<std::string> lidar_names(const Reading& asked);
+
+/// The same for a LiDAR whose poses are those of another.
+inline Reading without_poses(Reading asked) {
+  asked.poses = ByOdometry{};
+  return asked;
+}
 
 /// Returns what stands in results and on pages: (what, how) in a fixed order.
 using ReadingMembers = std::vector<std::pair<std::string, std::string>>;

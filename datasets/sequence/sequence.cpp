@@ -75,6 +75,7 @@ void Sequence::describe(std::size_t scan_index, Frame& frame) const {
   frame.map_from_sensor = entry.map_from_sensor;
   frame.stamp_ns = entry.stamp_ns;
   frame.point_times_ns.clear();
+  frame.origins = {};
   frame.motions.reset();
   frame.radial_velocity_m_s.clear();
 }

@@ -100,6 +100,7 @@ struct Frame {
   /// When each point was measured after the stamp; empty unless the data set has such times and has
   /// not moved the points by them.
   std::vector<std::int64_t> point_times_ns;
+  RayOrigins origins;                   ///< of a rig of several LiDARs
   std::optional<PointMotions> motions;  ///< of data sets of scene flow
   /// Of the surface relative to the sensor along each point's ray, positive away from the sensor,
   /// of sensors that measure it; else empty. NaN where it is not known.

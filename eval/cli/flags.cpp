@@ -242,6 +242,10 @@ std::vector<std::pair<std::string, std::string>> key_values(std::string_view fla
   std::istringstream parts(text);
   for (std::string part; std::getline(parts, part, ',');) {
     const std::size_t equals = part.find('=');
+    if (equals == std::string::npos && !pairs.empty() && pairs.back().first == "lidars") {
+      pairs.back().second += ',' + part;
+      continue;
+    }
     if (equals == std::string::npos || equals == 0) {
       throw UsageError(fmt::format("{}: '{}' has no value, expected key=value", flag, part));
     }

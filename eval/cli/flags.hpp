@@ -68,7 +68,8 @@ void add_stale_flag(CLI::App& command, bool& allow_stale);
 /// and completion list them.
 std::string type_of_names(const std::vector<std::string_view>& names);
 
-/// Returns the pairs of "key=value,key=value". Throws UsageError naming the flag.
+/// Returns the pairs of "key=value,key=value"; the value of lidars may have commas itself. Throws
+/// UsageError naming the flag.
 std::vector<std::pair<std::string, std::string>> key_values(std::string_view flag,
                                                             const std::string& text);
 

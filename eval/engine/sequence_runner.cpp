@@ -65,8 +65,14 @@ auto naming_scan(const Sequence& sequence, std::size_t scan_index, Work&& work) 
   }
 }
 
-/// Returns the conditions under which the method of `settings` runs on a sequence.
+/// Returns the conditions under which the method of `settings` runs on a sequence. Throws
+/// UsageError for one that cannot.
 RunContext context_of(const Sequence& sequence, const RunSettings& settings) {
+  if (!sequence.reading().lidars.empty() && !settings.method->takes_origins) {
+    throw UsageError(fmt::format(
+        "--method {}: looks from one place, not from those of {}, expected one LiDAR, {}",
+        settings.method->name, sequence.reading().lidars, option("lidars", "NAME")));
+  }
   RunContext context{
       .threads = settings.threads, .scan_count = sequence.size(), .scores = settings.keeps_scores};
   for (const ScanEntry& scan : sequence.recording().scans) {
@@ -140,7 +146,7 @@ class SequenceRun {
       fingerprint_without_poses_.add(frame);
       const Clock::time_point start = Clock::now();
       std::unique_ptr<Observed> observed = naming_scan(sequence_, scan_index, [&] {
-        return method_->observe(frame.points, frame.map_from_sensor);
+        return method_->observe(frame.points, frame.map_from_sensor, frame.origins);
       });
       return ReadyScan{std::move(frame), std::move(observed), milliseconds_since(start)};
     });
@@ -303,8 +309,9 @@ Result run_sequence(const Sequence& sequence, const RunSettings& settings,
 
 std::vector<LabelledScan> push_scan(Method& method, const Sequence& sequence,
                                     std::size_t scan_index, const Frame& frame) {
-  return naming_scan(sequence, scan_index,
-                     [&] { return method.push(frame.points, frame.map_from_sensor); });
+  return naming_scan(sequence, scan_index, [&] {
+    return method.push(frame.points, frame.map_from_sensor, frame.origins);
+  });
 }
 
 SequenceProfile profile_sequence(const Sequence& sequence, const RunSettings& settings,

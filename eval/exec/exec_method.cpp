@@ -61,8 +61,8 @@ class ExecMethod : public Method {
   }
 
   using Method::push;
-  std::unique_ptr<Observed> observe(std::span<const Point> points,
-                                    const Pose& map_from_sensor) override {
+  std::unique_ptr<Observed> observe(std::span<const Point> points, const Pose& map_from_sensor,
+                                    const RayOrigins&) override {
     return std::make_unique<WaitingScan>(points, map_from_sensor);
   }
 
@@ -210,7 +210,8 @@ MethodKind kind_of(const NamedKind& named) {
           .make = [command = named.command](const Settings& settings,
                                             const RunContext& context) -> std::unique_ptr<Method> {
             return std::make_unique<ExecMethod>(command, settings, context);
-          }};
+          },
+          .takes_origins = true};  // of which the program learns nothing
 }
 
 }  // namespace

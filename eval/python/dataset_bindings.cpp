@@ -34,6 +34,17 @@ SharedDataset open_shared(const std::filesystem::path& path, const std::string& 
   return std::make_shared<Dataset>(open_dataset(path, options));
 }
 
+/// Returns where the ray of each point starts, (N, 3); None where all start at the sensor.
+py::object origins_of(const RayOrigins& origins) {
+  if (origins.empty()) return py::none();
+  py::array_t<double> rows({origins.of_point.size(), std::size_t{3}});
+  double* row = rows.mutable_data();
+  for (std::size_t i = 0; i < origins.of_point.size(); ++i, row += 3) {
+    Eigen::Map<Eigen::Vector3d>{row} = origins.at(i);
+  }
+  return std::move(rows);
+}
+
 py::dict read_scan(const OpenSequence& opened, std::size_t scan_index) {
   if (scan_index >= opened.sequence->size()) throw py::index_error("no such scan");
   Frame frame;
@@ -46,6 +57,7 @@ py::dict read_scan(const OpenSequence& opened, std::size_t scan_index) {
       "pose"_a = matrix_of(frame.map_from_sensor.matrix()), "stamp_ns"_a = frame.stamp_ns,
       "point_times_ns"_a = array_or_none(std::move(frame.point_times_ns)),
       "radial_velocity_m_s"_a = array_or_none(std::move(frame.radial_velocity_m_s)),
+      "origins"_a = origins_of(frame.origins),
       "truth"_a = frame.truth ? py::object(array_of(std::move(*frame.truth))) : py::none());
 }
 

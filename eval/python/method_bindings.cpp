@@ -101,10 +101,18 @@ class LockedMethod {
     keep_freed_memory();
   }
 
-  py::list push(const py::array& array, const py::array& matrix) {
+  /// `places` are rows of (M, 3), `place_of_point` is one of them per point.
+  py::list push(const py::array& array, const py::array& matrix, const DoubleArray& places,
+                const py::array_t<std::uint8_t, kPlain>& place_of_point) {
     const ArrayPoints points(array);
     const Pose pose = pose_of(matrix);
-    return take([&] { return method_->push(points.span(padded_), pose); });
+    RayOrigins origins;
+    for (py::ssize_t i = 0; i < places.size(); i += 3) {
+      origins.positions_m.emplace_back(places.data()[i], places.data()[i + 1],
+                                       places.data()[i + 2]);
+    }
+    origins.of_point.assign(place_of_point.data(), place_of_point.data() + place_of_point.size());
+    return take([&] { return method_->push(points.span(padded_), pose, origins); });
   }
   py::list finish() {
     return take([&] { return method_->finish(); });

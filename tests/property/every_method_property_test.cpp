@@ -52,6 +52,92 @@ TEST_P(EveryMethodOnSmallWorlds, GivesTheSameLabelsScoresAndReasonsForAnyNumberO
   }
 }
 
+TEST_P(EveryMethodOnSmallWorlds, GivesARigWithEqualOriginsTheBitsOfOneCloudOrRefusesIt) {
+  for (SmallWorld& world : small_worlds()) {
+    const auto expected = results_of(*make({.scores = true}), world);
+    for (const std::vector<Point>& scan : world.scans) {
+      RayOrigins& origins = world.origins.emplace_back();
+      origins.positions_m.assign(2, Eigen::Vector3d::Zero());
+      for (std::size_t i = 0; i < scan.size(); ++i) origins.of_point.push_back(i / 7 % 2);
+    }
+    if (!find_method(GetParam())->takes_origins) {
+      EXPECT_THROW(results_of(*make({}), world), std::invalid_argument);
+      continue;
+    }
+    const auto results = results_of(*make({.threads = 3, .scores = true}), world);
+    ASSERT_EQ(results.size(), expected.size());
+    for (std::size_t k = 0; k < results.size(); ++k) {
+      ASSERT_EQ(results[k].labels, expected[k].labels) << "scan " << k;
+      ASSERT_EQ(results[k].scores, expected[k].scores) << "scan " << k;
+    }
+  }
+}
+
+/// Sensors at x = -1 and 1 m look along y at walls 5 m away. From the seventh scan on the right one
+/// also sees a board 2.5 m away, around x = board_m.
+SmallWorld world_of_two_columns(float board_m) {
+  SmallWorld world;
+  for (std::size_t k = 0; k < 12; ++k) {
+    world.poses.push_back(Pose::Identity());
+    std::vector<Point>& points = world.scans.emplace_back();
+    RayOrigins& origins = world.origins.emplace_back();
+    origins.positions_m = {{-1, 0, 0}, {1, 0, 0}};
+    const auto add = [&](std::uint8_t sensor, float x, float y, float z) {
+      points.push_back({x, y, z, 0});
+      origins.of_point.push_back(sensor);
+    };
+    for (float u = -0.95F; u < 1; u += 0.1F) {
+      for (float v = -0.95F; v < 1; v += 0.1F) {
+        add(0, -1 + u, 5, v);
+        add(1, 1 + u, 5, v);
+        if (k > 6 && std::abs(u) < 0.3F && std::abs(v) < 0.3F) add(1, board_m + u, 2.5F, v);
+      }
+    }
+  }
+  return world;
+}
+
+/// The number of points of the board that move in some scan.
+std::size_t moving_on_board(Method& method, const SmallWorld& world) {
+  std::size_t moving = 0;
+  for (const LabelledScan& scan : results_of(method, world)) {
+    for (std::size_t i = 0; i < scan.labels.size(); ++i) {
+      const bool is_board = world.scans[scan.scan_index][i].y < 4;
+      moving += is_board && scan.labels[i] == kMovingLabel ? 1U : 0U;
+    }
+  }
+  return moving;
+}
+
+TEST_P(EveryMethodOnSmallWorlds, KnowsWhatIsFreeBetweenTwoOriginsTwoMetresApart) {
+  const MethodKind* kind = find_method(GetParam());
+  if (!kind->takes_origins) GTEST_SKIP() << "refuses several origins, as tested above";
+  const auto make_here = [&] {
+    Settings settings = kind->defaults;
+    settings.set("max_range_m", 12.0);
+    for (const char* size : {"voxel_size_m", "resolution_m"}) {
+      if (settings.find(size) != nullptr) settings.set(size, 0.2);
+    }
+    for (const char* none : {"pose_error_voxels", "min_otsu_score"}) {
+      if (settings.find(none) != nullptr) settings.set(none, 0);
+    }
+    if (settings.find("kernel_width_voxels") != nullptr) settings.set("kernel_width_voxels", 3);
+    if (settings.find("when") != nullptr)
+      settings.set("when", kind->name == "dufomap" ? "online" : "before");
+    return kind->make(settings, {});
+  };
+  // Where the right sensor's rays passed; a ray from the left one to its wall did not.
+  SmallWorld ahead = world_of_two_columns(1);
+  EXPECT_GT(moving_on_board(*make_here(), ahead), 20U);
+  // Where no ray passed; one from the left sensor to the right one's wall would have.
+  SmallWorld between = world_of_two_columns(0);
+  EXPECT_EQ(moving_on_board(*make_here(), between), 0U);
+  between.origins.assign(12, {{{-1, 0, 0}}, {}});
+  for (std::size_t k = 0; k < 12; ++k)
+    between.origins[k].of_point.assign(between.scans[k].size(), 0);
+  EXPECT_GT(moving_on_board(*make_here(), between), 20U) << "this test cannot fail";
+}
+
 TEST_P(EveryMethodOnSmallWorlds, GivesTheSameLabelsWithAndWithoutScores) {
   for (const SmallWorld& world : small_worlds()) {
     const auto plain = results_of(*make({}), world);

@@ -27,6 +27,30 @@ def test_gives_the_labels_of_the_program(street, near, finished):
             assert np.array_equal(ours, finished["08"].labels(scan.stem))
 
 
+def test_casts_rays_from_the_origins_of_points(street, near):
+    scans = list(mosbench.open(street))
+    assert all(scan.origins is None for scan in scans)
+    expected = labels_of(scans, near)
+    mos, apart = mosbench.MOS(near), mosbench.MOS(near)
+    differs = False
+    for scan, labels in zip(scans, expected):
+        here = np.zeros((len(scan.points), 3))
+        assert np.array_equal(mos.push(scan.points, scan.pose, here)[0].labels, labels)
+        there = here + [0.0, 0.0, 1.5] * (np.arange(len(here)) % 2)[:, None]
+        differs |= not np.array_equal(apart.push(scan.points, scan.pose, there)[0].labels, labels)
+    assert differs
+    points, pose = scans[0].points, scans[0].pose
+    for wrong, says in (
+        (np.zeros((3, 3)), "one index of them per point"),
+        (np.zeros(len(points)), r"origins: has shape"),
+        (np.arange(3.0 * len(points)).reshape(-1, 3), "expected at most 256"),
+    ):
+        with pytest.raises(ValueError, match=says):
+            mosbench.MOS(near).push(points, pose, wrong)
+    with pytest.raises(ValueError, match="looks from one place"):
+        mosbench.MOS(method="yoon").push(points, pose, np.zeros((len(points), 3)))
+
+
 def test_refuses_a_config_of_another_method():
     with pytest.raises(ValueError, match="method: is dufomap, expected hmm-mos"):
         mosbench.MOS(mosbench.Config.preset("doals-20m"), method="dufomap")

@@ -70,9 +70,11 @@ class Method {
 
   /// Does what needs no scans before it. May run while another thread pushes the previous scan;
   /// scans are observed one after the other, in order. Throws std::range_error naming the point
-  /// when a coordinate is out of reach of the map, and for a pose that is not rigid.
+  /// when a coordinate is out of reach of the map, and for a pose that is not rigid;
+  /// std::invalid_argument for origins that do not fit the points, or that the method cannot take.
   virtual std::unique_ptr<Observed> observe(std::span<const Point> points,
-                                            const Pose& map_from_sensor) = 0;
+                                            const Pose& map_from_sensor,
+                                            const RayOrigins& origins = {}) = 0;
 
   /// Takes an observed scan in and returns the scans whose labels became final, in order: this one
   /// when online; none or earlier ones when delayed. Throws std::logic_error beyond
@@ -80,9 +82,9 @@ class Method {
   virtual std::vector<LabelledScan> push(std::unique_ptr<Observed> observed) = 0;
 
   /// The same for a scan that was not observed before.
-  virtual std::vector<LabelledScan> push(std::span<const Point> points,
-                                         const Pose& map_from_sensor) {
-    return push(observe(points, map_from_sensor));
+  virtual std::vector<LabelledScan> push(std::span<const Point> points, const Pose& map_from_sensor,
+                                         const RayOrigins& origins = {}) {
+    return push(observe(points, map_from_sensor, origins));
   }
 
   /// Returns the labels still held back by a delay, in order. Nothing can be pushed after it.
@@ -142,6 +144,7 @@ struct MethodKind {
   std::string_view score_name = "score";  ///< what scores are, with unit: "margin, m"
   /// What LabelledScan::threshold is, "Otsu threshold"; empty when no threshold is worth showing.
   std::string_view threshold_name = "";
+  bool takes_origins = false;           ///< of several sensors; else it refuses RayOrigins
   bool gives_reasons = false;           ///< results with scores also say why each point moves
   bool is_named_by_variant = false;     ///< folders of its runs are called by its variant
   std::vector<SettingWord> words = {};  ///< short words that --set takes

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace mosbench {
 
@@ -16,6 +18,18 @@ static_assert(sizeof(Point) == 16);
 
 /// map_from_sensor, read by cancellation: p_map = map_from_sensor * p_sensor. Metres.
 using Pose = Eigen::Isometry3d;
+
+/// Where the rays of a scan start that several sensors measured. Empty: all start at the origin of
+/// the points' frame.
+struct RayOrigins {
+  std::vector<Eigen::Vector3d> positions_m;  ///< of at most 256 sensors, in the points' frame
+  std::vector<std::uint8_t> of_point;        ///< an index of positions_m for each point
+
+  bool empty() const { return of_point.empty(); }
+  Eigen::Vector3d at(std::size_t point) const {
+    return empty() ? Eigen::Vector3d::Zero() : positions_m[of_point[point]];
+  }
+};
 
 /// Label of a static point, as in the prediction files of SemanticKITTI-MOS.
 inline constexpr std::uint32_t kStaticLabel = 9;

@@ -15,9 +15,11 @@ constexpr std::size_t kForgetScans = 16;
 
 /// Takes the points beyond the range limit out of a scan's points, but not out of its voxels: rays
 /// lead there.
-void leave_out_far_points(std::span<const Point> points, double max_range_m, VoxelizedScan& scan) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const double x = points[i].x, y = points[i].y, z = points[i].z;
+void leave_out_far_points(const PosedScan& posed, double max_range_m, VoxelizedScan& scan) {
+  for (std::size_t i = 0; i < posed.points.size(); ++i) {
+    const Point& p = posed.points[i];
+    const Eigen::Vector3d ray = Eigen::Vector3d(p.x, p.y, p.z) - posed.origins.at(i);
+    const double x = ray.x(), y = ray.y(), z = ray.z();
     if (!((x * x + y * y) + z * z <= max_range_m * max_range_m)) scan.voxel_of_point[i] = kNoVoxel;
   }
 }
@@ -25,16 +27,17 @@ void leave_out_far_points(std::span<const Point> points, double max_range_m, Vox
 }  // namespace
 
 Pipeline::Pipeline(const Config& config, const RunContext& context)
-    : SequentialMethod(context, kReach_voxels * checked(config).resolution_m), config_(config) {}
+    : SequentialMethod(context, kReach_voxels * checked(config).resolution_m, true),
+      config_(config) {}
 
 std::vector<LabelledScan> Pipeline::take(PosedScan& posed, LabelledScan result) {
   const StageRecord record{result.stages, context().cpu_times};
   if (!grid_) grid_ = grid_around(posed.map_from_sensor.translation(), config_.resolution_m);
   VoxelizedScan scan = timed(record, "voxelize", [&] {
     return voxelize(posed.points, posed.map_from_sensor, *grid_, config_.min_range_m,
-                    config_.max_range_m, pool());
+                    config_.max_range_m, pool(), posed.origins);
   });
-  leave_out_far_points(posed.points, config_.max_range_m, scan);
+  leave_out_far_points(posed, config_.max_range_m, scan);
   std::vector<LabelledScan> results;
   if (config_.when == When::kOnline && result.scan_index > 0) judge(scan, result);
   add_voids(scan, record);
@@ -124,7 +127,8 @@ MethodKind method_kind() {
           .defaults = settings_of(Config{}),
           .check = check_settings<Config>,
           .make = make_method<Pipeline, Config>,
-          .score_name = "seen void"};
+          .score_name = "seen void",
+          .takes_origins = true};
 }
 
 }  // namespace mosbench::dufomap

@@ -37,37 +37,32 @@ constexpr std::array kBytes{RayWindow::BytesAlong::kX, RayWindow::BytesAlong::kY
 
 Voxel difference(const Voxel& a, const Voxel& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 
-/// Sights of one scan and the window that holds all that they touch.
+/// Sights of one sensor of a scan, and a box that holds all that they touch.
 class Caster {
  public:
-  Caster(const VoxelizedScan& scan, const VoxelGrid& grid, const Config& config)
-      : scan_(scan),
+  Caster(const VoxelSet& measured, const Eigen::Vector3d& sensor_m, const VoxelGrid& grid,
+         const Config& config)
+      : measured_(measured),
         config_(config),
-        sensor_m_(scan.sensor_m - grid.origin_voxels * grid.voxel_size_m) {
-    // Not scan.sensor_voxel, which is rounded otherwise and may be the one beside.
+        sensor_m_(sensor_m - grid.origin_voxels * grid.voxel_size_m) {
+    // Not the scan's sensor_voxel, which is rounded otherwise and may be the one beside.
     sensor_ = voxel_at_position(sensor_m_, config.resolution_m);
     box_ = {sensor_, sensor_};
-    for (const BlockIndex& block : scan.measured.blocks) include(block);
+    for (const BlockIndex& block : measured.blocks) include(block);
     // The last d_s may begin behind the sensor.
     const double behind = std::ceil(config.sensor_noise_m / config.resolution_m);
     box_.widen(static_cast<std::int32_t>(behind) + 2 * (config.pose_error_voxels + 1));
   }
 
-  /// Lays windows out in pairs: bytes along x, bytes along y.
-  BlockIndex lay_out(std::span<RayWindow> windows) {
-    BlockIndex first;
-    for (std::size_t i = 0; i < windows.size(); ++i) {
-      first = lay_out_around(box_, windows[i], kBytes[i % 2]);
-    }
-    corner_ = voxel_at(first, 0);
-    return first;
-  }
+  const VoxelBox& box() const { return box_; }
+  /// Takes the first block of the windows.
+  void use_windows_from(const BlockIndex& first) { corner_ = voxel_at(first, 0); }
 
   /// Calls visit(goal, sight) for the measured voxels of a block.
   template <typename Visit>
   void for_each_sight(std::size_t slot, Visit&& visit) const {
-    for_each_cell(scan_.measured.masks[slot], [&](std::uint32_t cell) {
-      const Voxel goal = voxel_at(scan_.measured.blocks[slot], cell);
+    for_each_cell(measured_.masks[slot], [&](std::uint32_t cell) {
+      const Voxel goal = voxel_at(measured_.blocks[slot], cell);
       const Eigen::Vector3d line_m = centre_m(goal, config_.resolution_m) - sensor_m_;
       const double length_m = line_m.norm();
       if (length_m > 0) visit(goal, Sight{line_m / length_m, length_m});
@@ -110,7 +105,7 @@ class Caster {
   /// Returns the measured blocks in the order of their azimuths.
   std::vector<std::uint32_t> slots_by_azimuth() const {
     std::vector<std::pair<float, std::uint32_t>> azimuths;
-    for (const BlockIndex& block : scan_.measured.blocks) {
+    for (const BlockIndex& block : measured_.blocks) {
       const Voxel from_sensor = difference(voxel_at(block, 0), sensor_);
       azimuths.emplace_back(std::atan2(static_cast<float>(from_sensor.y + kBlockSide / 2),
                                        static_cast<float>(from_sensor.x + kBlockSide / 2)),
@@ -148,12 +143,21 @@ class Caster {
             BorderCrossings(from_m, sight.direction, voxel, config_.resolution_m)};
   }
 
-  const VoxelizedScan& scan_;
+  const VoxelSet& measured_;
   const Config& config_;
   Eigen::Vector3d sensor_m_;  ///< from the grid's origin
   Voxel sensor_, corner_;
   VoxelBox box_;
 };
+
+/// Lays windows out in pairs: bytes along x, bytes along y. Returns their first block.
+BlockIndex lay_out(const VoxelBox& box, std::span<RayWindow> windows) {
+  BlockIndex first;
+  for (std::size_t i = 0; i < windows.size(); ++i) {
+    first = lay_out_around(box, windows[i], kBytes[i % 2]);
+  }
+  return first;
+}
 
 /// Casts rays into windows with bytes along x and y.
 void cast(RaysByAxis& rays, const SensorBits& sensor_bits, std::span<const RayWindow, 2> hits,
@@ -164,6 +168,27 @@ void cast(RaysByAxis& rays, const SensorBits& sensor_bits, std::span<const RayWi
   }
   for (ExactRay& ray : others) ray.start = sensor_bits[2];
   cast_exact(others, RayEnd::kAtHit, hits[0], beyond_voxels, crossed[0]);
+}
+
+/// Casts the rays of one sensor.
+void cast_all(const Caster& caster, std::size_t blocks, const Config& config, SightScratch& scratch,
+              ThreadPool& pool) {
+  const SensorBits sensor_bits = caster.sensor_bits(scratch.hits);
+  const std::vector<std::uint32_t> slots = caster.slots_by_azimuth();
+  // Every share has a narrow sector for each of the rays that are walked together. The next eight
+  // rays lead through the same memory, and all shares take about as long.
+  const std::size_t shares = 16 * pool.size(), sectors = shares * kRaysTogether;
+  pool.for_ranges(shares, 1, [&](std::size_t share, std::size_t, unsigned thread) {
+    RaysByAxis rays;
+    for (std::size_t sector = share; sector < sectors; sector += shares) {
+      const std::size_t end = blocks * (sector + 1) / sectors;
+      for (std::size_t i = blocks * sector / sectors; i < end; ++i) {
+        caster.append_rays(slots[i], sensor_bits, rays);
+      }
+    }
+    cast(rays, sensor_bits, scratch.hits, config.pose_error_voxels,
+         std::span(scratch.crossed).subspan(2 * std::size_t{thread}).first<2>());
+  });
 }
 
 SeenSpace space_of(VoxelList crossed, const VoxelList& hit) {
@@ -202,31 +227,27 @@ SeenSpace see(const VoxelizedScan& scan, const VoxelGrid& grid, const Config& co
               SightScratch& scratch, ThreadPool& pool) {
   const std::size_t blocks = scan.measured.block_count();
   if (blocks == 0) return {};
-  Caster caster(scan, grid, config);
+  std::vector<Caster> casters;
+  scan.for_each_origin([&](const auto& sensor_m, const Voxel&, const VoxelSet& measured) {
+    casters.emplace_back(measured, sensor_m, grid, config);
+  });
+  VoxelBox box = casters.front().box();
+  for (const Caster& caster : casters) {
+    box.include(caster.box().low);
+    box.include(caster.box().high);
+  }
   scratch.crossed.resize(2 * pool.size());
-  caster.lay_out(scratch.crossed);
+  lay_out(box, scratch.crossed);
   auto& [hits, turned_hits] = scratch.hits;
-  const BlockIndex first = caster.lay_out(scratch.hits);
+  const BlockIndex first = lay_out(box, scratch.hits);
   const WindowBits bits(hits);
   WindowPen hit_pen(hits);
-  for (std::size_t slot = 0; slot < blocks; ++slot) caster.mark_hits(slot, bits, hit_pen);
+  for (Caster& caster : casters) {
+    caster.use_windows_from(first);
+    for (std::size_t slot = 0; slot < blocks; ++slot) caster.mark_hits(slot, bits, hit_pen);
+  }
   turned_hits.copy_turned(hits);
-  const SensorBits sensor_bits = caster.sensor_bits(scratch.hits);
-  const std::vector<std::uint32_t> slots = caster.slots_by_azimuth();
-  // Every share has a narrow sector for each of the rays that are walked together. The next eight
-  // rays lead through the same memory, and all shares take about as long.
-  const std::size_t shares = 16 * pool.size(), sectors = shares * kRaysTogether;
-  pool.for_ranges(shares, 1, [&](std::size_t share, std::size_t, unsigned thread) {
-    RaysByAxis rays;
-    for (std::size_t sector = share; sector < sectors; sector += shares) {
-      const std::size_t end = blocks * (sector + 1) / sectors;
-      for (std::size_t i = blocks * sector / sectors; i < end; ++i) {
-        caster.append_rays(slots[i], sensor_bits, rays);
-      }
-    }
-    cast(rays, sensor_bits, scratch.hits, config.pose_error_voxels,
-         std::span(scratch.crossed).subspan(2 * std::size_t{thread}).first<2>());
-  });
+  for (const Caster& caster : casters) cast_all(caster, blocks, config, scratch, pool);
   return space_of(collect(scratch.crossed, first, pool), collect(scratch.hits, first, pool));
 }
 

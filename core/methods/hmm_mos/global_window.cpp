@@ -91,7 +91,7 @@ std::optional<Sweep> Eviction::enter(const Eigen::Vector3d& sensor_m) {
   while (sensors_m_.size() > positions_kept_) sensors_m_.pop_front();
   const std::size_t earlier = sensors_m_.size();
   sensors_m_.push_back(sensor_m);
-  double path_m = 0;
+  double path_m = rays_from_m_;
   for (std::size_t i = 1; i < sensors_m_.size(); ++i) {
     path_m += (sensors_m_[i] - sensors_m_[i - 1]).norm();
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -72,6 +73,9 @@ class Eviction {
 
   Eviction(const Config& config, const VoxelGrid& grid);
 
+  /// Rays may start this far from the positions: what is asked lies farther away by it.
+  void expect_rays_from(double distance_m) { rays_from_m_ = std::max(rays_from_m_, distance_m); }
+
   /// Takes the position of a scan before it enters the map. Returns the sweep to do before.
   std::optional<Sweep> enter(const Eigen::Vector3d& sensor_m);
 
@@ -84,6 +88,7 @@ class Eviction {
  private:
   VoxelGrid grid_;
   double evict_radius_m_, safe_path_m_;
+  double rays_from_m_ = 0;
   std::size_t positions_kept_;
   std::deque<Eigen::Vector3d> sensors_m_;  // the last ones, current one last
   bool fast_ = false;                      // the path is longer than safe_path_m_

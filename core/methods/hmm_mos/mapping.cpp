@@ -7,19 +7,20 @@
 namespace mosbench::hmm_mos {
 
 std::unique_ptr<ObservedScan> MappedMethod::see(std::span<const Point> points,
-                                                const Pose& map_from_sensor, ThreadPool& pool) {
+                                                const Pose& map_from_sensor,
+                                                const RayOrigins& origins, ThreadPool& pool) {
   auto current = std::make_unique<ObservedScan>();
   const StageRecord record{current->stages, context().cpu_times};
   const VoxelGrid around =
       grid_ ? *grid_ : grid_around(map_from_sensor.translation(), config_.voxel_size_m);
   current->scan = timed(record, "voxelize", [&] {
-    return voxelize(points, map_from_sensor, around, config_.min_range_m, config_.max_range_m,
-                    pool);
+    return voxelize(points, map_from_sensor, around, config_.min_range_m, config_.max_range_m, pool,
+                    origins);
   });
   if (!grid_) grid_ = around;  // written once: the previous scan may be pushed meanwhile
   current->observed = timed(record, "raycast", [&] {
-    return raycast(current->scan.measured, current->scan.sensor_voxel, config_.voxel_size_m,
-                   config_.max_range_m, scratch_, pool);
+    return raycast(ray_sources(current->scan, config_.voxel_size_m, config_.max_range_m), scratch_,
+                   pool);
   });
   return current;
 }
@@ -30,6 +31,9 @@ std::vector<LabelledScan> MappedMethod::enter(ObservedScan& current) {
   if (!map_) map_.emplace(config_, *grid_, observer_);
   {
     const StageClock clock(record, "map_update");
+    for (const OwnVoxels& own : scan.by_origin) {
+      map_->expect_rays_from((own.sensor_m - scan.sensor_m).norm());
+    }
     std::vector<const VoxelSet*> sources{&scan.measured};
     if (config_.distance_field_scans == 2) sources.push_back(&previous_measured_);
     map_->update(current.observed, sources, scan.sensor_m, k(), pool());

@@ -48,7 +48,7 @@ class MappedMethod : public ScanMethod<ObservedScan> {
   virtual std::size_t held_bytes() const = 0;
 
   std::unique_ptr<ObservedScan> see(std::span<const Point> points, const Pose& map_from_sensor,
-                                    ThreadPool& pool) final;
+                                    const RayOrigins& origins, ThreadPool& pool) final;
   /// Updates beliefs x and states S of observed voxels; voxels out of range or unobserved for w_g
   /// leave.
   std::vector<LabelledScan> enter(ObservedScan& current) final;

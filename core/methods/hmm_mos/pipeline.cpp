@@ -201,6 +201,7 @@ MethodKind method_kind() {
           .make = tracks::make_method<Pipeline, Config>,
           .score_name = kScoreName,
           .threshold_name = kThresholdName,
+          .takes_origins = true,
           .is_named_by_variant = true};
 }
 
@@ -217,7 +218,8 @@ MethodKind reference_kind() {
       .make = make_slow,
       .is_twin = true,
       .score_name = kScoreName,
-      .threshold_name = kThresholdName};
+      .threshold_name = kThresholdName,
+      .takes_origins = true};
 }
 
 }  // namespace mosbench::hmm_mos

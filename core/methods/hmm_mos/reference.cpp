@@ -11,8 +11,7 @@ namespace reference {
 namespace {
 
 struct Scan final : NumberedScan {
-  PointVoxels voxels;
-  SetOf measured, observed;   // P'_M, P'_obs
+  SeenVoxels seen;
   MapOf<ScanVoxel> occupied;  // P'_M within the range limit
   Eigen::Vector3d sensor_m = Eigen::Vector3d::Zero();
   LabelledScan result;
@@ -25,22 +24,14 @@ class Reference final : public ScanMethod<Scan> {
   std::vector<std::string> remarks() const override { return remarks_on_delay(c_, context()); }
 
  private:
-  /// P'_obs: voxels on the lines from the sensor to P'_M.
-  std::unique_ptr<Scan> see(std::span<const Point> points, const Pose& t, ThreadPool&) override {
+  std::unique_ptr<Scan> see(std::span<const Point> points, const Pose& t, const RayOrigins& origins,
+                            ThreadPool&) override {
     auto scan = std::make_unique<Scan>();
     scan->sensor_m = t.translation();
-    scan->voxels = voxels_of(points, t, c_.min_range_m, c_.voxel_size_m);
-    scan->result.nonfinite_points = scan->voxels.nonfinite_points;
-    for (const std::optional<Voxel>& v : scan->voxels.of_point)
-      if (v) scan->measured.insert(*v);
-    const Voxel s = voxel_at(scan->sensor_m, c_.voxel_size_m);
-    for (const Voxel& v : scan->measured) {
-      if (distance_sq_m2(v, scan->sensor_m) <= squared(c_.max_range_m)) scan->occupied[v] = {};
-      for (const Voxel& q : line(s, v)) {
-        const double d_sq = distance_sq_m2({s.x - q.x, s.y - q.y, s.z - q.z}, {0, 0, 0});
-        if (d_sq <= squared(c_.max_range_m)) scan->observed.insert(q);
-      }
-    }
+    scan->seen =
+        reference::see(points, t, origins, {c_.min_range_m, c_.max_range_m}, c_.voxel_size_m);
+    scan->result.nonfinite_points = scan->seen.nonfinite_points;
+    for (const Voxel& v : scan->seen.occupied) scan->occupied[v] = {};
     return scan;
   }
 
@@ -48,11 +39,11 @@ class Reference final : public ScanMethod<Scan> {
   std::vector<LabelledScan> enter(Scan& scan) override {
     const int n = c_.delay_scans, scan_count = static_cast<int>(context().scan_count.value_or(0));
     scan.result.scan_index = static_cast<std::size_t>(++k_);
-    scan.result.labels.assign(scan.voxels.of_point.size(), kStaticLabel);
-    if (context().scores) scan.result.scores.assign(scan.voxels.of_point.size(), 0);
-    SetOf sources = std::exchange(previous_measured_, scan.measured);
+    scan.result.labels.assign(scan.seen.of_point.size(), kStaticLabel);
+    if (context().scores) scan.result.scores.assign(scan.seen.of_point.size(), 0);
+    SetOf sources = std::exchange(previous_measured_, scan.seen.measured);
     if (c_.distance_field_scans == 1) sources.clear();
-    sources.insert(scan.measured.begin(), scan.measured.end());
+    sources.insert(scan.seen.measured.begin(), scan.seen.measured.end());
     update_map(scan, sources);
     forget(scan.sensor_m);
     held_.push_back(std::move(scan));
@@ -73,7 +64,7 @@ class Reference final : public ScanMethod<Scan> {
   /// changed.
   void update_map(const Scan& scan, const SetOf& sources) {
     const double e = c_.transition_epsilon;
-    for (const Voxel& v : scan.observed) {
+    for (const Voxel& v : scan.seen.observed) {
       double d_sq = std::numeric_limits<double>::max();  // voxels
       for (const Voxel& u : sources)
         d_sq = std::min(d_sq, norm_sq(v.x - u.x, v.y - u.y, v.z - u.z));
@@ -181,8 +172,8 @@ class Reference final : public ScanMethod<Scan> {
 
   /// Points take the label of their voxel; a scan has moving points where T > otsu_min.
   void label(Scan& scan) const {
-    for (std::size_t i = 0; i < scan.voxels.of_point.size(); ++i) {
-      const std::optional<Voxel>& v = scan.voxels.of_point[i];
+    for (std::size_t i = 0; i < scan.seen.of_point.size(); ++i) {
+      const std::optional<Voxel>& v = scan.seen.of_point[i];
       const ScanVoxel* voxel = v ? find(scan.occupied, *v) : nullptr;
       if (voxel == nullptr) continue;
       if (moves(scan) && voxel->dynamic) scan.result.labels[i] = kMovingLabel;

@@ -65,30 +65,6 @@ inline Voxel voxel_at(const Eigen::Vector3d& p_m, double size_m) {
   return {static_cast<int>(index.x()), static_cast<int>(index.y()), static_cast<int>(index.z())};
 }
 
-/// The voxels of a scan's points; none for points that do not take part.
-struct PointVoxels {
-  std::vector<std::optional<Voxel>> of_point;
-  std::size_t nonfinite_points = 0;
-};
-
-/// P_M = T_{M->S} P_S; P'_M = floor(P_M / Delta).
-inline PointVoxels voxels_of(std::span<const Point> points, const Pose& t, double min_range_m,
-                             double size_m) {
-  PointVoxels voxels;
-  for (const Point& point : points) {
-    voxels.of_point.emplace_back();
-    const bool finite = std::isfinite(double{point.x} + point.y + point.z);
-    voxels.nonfinite_points += !finite;
-    Eigen::Vector3d p;
-    for (int row = 0; row < 3; ++row)
-      p[row] = ((t(row, 0) * point.x + t(row, 1) * point.y) + t(row, 2) * point.z) + t(row, 3);
-    const Eigen::Vector3d ray = p - t.translation();
-    if (finite && norm_sq(ray.x(), ray.y(), ray.z()) > squared(min_range_m))
-      voxels.of_point.back() = voxel_at(p, size_m);
-  }
-  return voxels;
-}
-
 /// Calls visit(neighbour) for the (2 radius + 1)^3 voxels around v, itself included.
 template <typename Visit>
 void for_neighbours(const Voxel& v, int radius, Visit visit) {
@@ -135,6 +111,47 @@ inline std::vector<Voxel> line(const Voxel& s, const Voxel& v) {
     }
   }
   return visited;
+}
+
+/// What a scan shows.
+struct SeenVoxels {
+  std::vector<std::optional<Voxel>> of_point;  // none for points that do not take part
+  SetOf measured, occupied, observed;  // P'_M, those within the range limit, P'_obs on the lines
+  std::size_t nonfinite_points = 0;
+};
+
+struct Ranges {
+  double min_m, max_m;
+};
+
+/// P_M = T_{M->S} P_S; P'_M = floor(P_M / Delta). Each ray starts at its own origin.
+inline SeenVoxels see(std::span<const Point> points, const Pose& t, const RayOrigins& origins,
+                      const Ranges& ranges, double size_m) {
+  SeenVoxels seen;
+  const auto in_range = [&](double x, double y, double z) {
+    return norm_sq(x, y, z) <= squared(ranges.max_m);
+  };
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point& point = points[i];
+    std::optional<Voxel>& v = seen.of_point.emplace_back();
+    const bool finite = std::isfinite(double{point.x} + point.y + point.z);
+    seen.nonfinite_points += !finite;
+    Eigen::Vector3d p;
+    for (int row = 0; row < 3; ++row)
+      p[row] = ((t(row, 0) * point.x + t(row, 1) * point.y) + t(row, 2) * point.z) + t(row, 3);
+    const Eigen::Vector3d sensor_m = t * origins.at(i), ray = p - sensor_m;
+    if (!finite || !(norm_sq(ray.x(), ray.y(), ray.z()) > squared(ranges.min_m))) continue;
+    v = voxel_at(p, size_m);
+    seen.measured.insert(*v);
+    if (in_range(v->x * size_m - sensor_m.x(), v->y * size_m - sensor_m.y(),
+                 v->z * size_m - sensor_m.z()))
+      seen.occupied.insert(*v);
+    const Voxel s = voxel_at(sensor_m, size_m);
+    for (const Voxel& q : line(s, *v))
+      if (in_range((s.x - q.x) * size_m, (s.y - q.y) * size_m, (s.z - q.z) * size_m))
+        seen.observed.insert(q);
+  }
+  return seen;
 }
 
 /// Returns the median of a non-empty list, of an even count the mean of the middle two, truncated.

@@ -49,6 +49,9 @@ class VoxelMap {
   /// The observer, if there is one, outlives the map.
   VoxelMap(const Config& config, const VoxelGrid& grid, BlockObserver* observer = nullptr);
 
+  /// To be called before an `update` with rays that start so far from the scan's position.
+  void expect_rays_from(double distance_m) { eviction_.expect_rays_from(distance_m); }
+
   /// One step x_k = eta B A x_{k-1} of the observed voxels, and their states (paper, III).
   /// `sources` are the measured sets whose union the distance field refers to; `sensor_m` is this
   /// scan's position. Returns the voxels whose state changed.

@@ -158,6 +158,7 @@ MethodKind method_kind() {
           .make = tracks::make_method<Pipeline, Config>,
           .score_name = "share of seeds",
           .threshold_name = "least share of seeds",
+          .takes_origins = true,
           .gives_reasons = true,
           .words = {{.name = "moving",
                      .usual = "now",

@@ -24,8 +24,15 @@ Voxel voxel_at(const Eigen::Vector3f& p, double voxels_per_m) {
   return {index(p.x()), index(p.y()), index(p.z())};
 }
 
-/// A ray from the sensor to a point, or as far as the range limit.
+/// Where rays start.
+struct Start {
+  Eigen::Vector3f at;
+  Voxel voxel;
+};
+
+/// A ray from its sensor to a point, or as far as the range limit.
 struct Line {
+  std::size_t start;
   Eigen::Vector3f end;
   Voxel end_voxel;
   bool cut;
@@ -38,16 +45,20 @@ class Lines {
       : config_(config), voxels_per_m_(1.0 / config.voxel_size_m) {
     const Eigen::Vector3d origin_m = grid.origin_voxels * grid.voxel_size_m;
     const Eigen::Vector3d sensor_m = scan.map_from_sensor.translation() - origin_m;
-    sensor_ = sensor_m.cast<float>();
-    sensor_voxel_ = voxel_at(sensor_, voxels_per_m_);
     const Eigen::Matrix3d rotation = scan.map_from_sensor.linear();
+    if (scan.origins.empty()) add_start(sensor_m);
+    for (const Eigen::Vector3d& place : scan.origins.positions_m) {
+      add_start(rotation * place + sensor_m);
+    }
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
       const Eigen::Vector3d p(scan.points[i].x, scan.points[i].y, scan.points[i].z);
-      const double range_sq_m2 = (p.x() * p.x() + p.y() * p.y()) + p.z() * p.z();
+      const Eigen::Vector3d ray = p - scan.origins.at(i);
+      const double range_sq_m2 = (ray.x() * ray.x() + ray.y() * ray.y()) + ray.z() * ray.z();
       const bool takes_part =
           range_sq_m2 > config.min_range_m * config.min_range_m && std::isfinite(range_sq_m2);
       if (!takes_part) continue;
-      lines_.push_back(line_to((rotation * p + sensor_m).cast<float>()));
+      const std::size_t start = scan.origins.empty() ? 0 : scan.origins.of_point[i];
+      lines_.push_back(line_to(start, (rotation * p + sensor_m).cast<float>()));
       point_of_line_.push_back(i);
     }
   }
@@ -56,7 +67,8 @@ class Lines {
   std::size_t point_of(std::size_t line) const { return point_of_line_[line]; }
 
   VoxelBox box() const {
-    VoxelBox box{sensor_voxel_, sensor_voxel_};
+    VoxelBox box{starts_.front().voxel, starts_.front().voxel};
+    for (const Start& start : starts_) box.include(start.voxel);
     for (const Line& line : lines_) box.include(line.end_voxel);
     box.widen(1);  // rounding may lead a ray past its end
     return box;
@@ -65,36 +77,44 @@ class Lines {
   /// Appends the ray of a line that leaves the sensor's voxel.
   void append_ray(const Line& line, const Voxel& corner, const WindowBits& bits,
                   std::vector<ExactRay>& rays) const {
-    if (line.end_voxel == sensor_voxel_) return;
-    Eigen::Vector3f direction = line.end - sensor_;
+    const auto& [sensor, sensor_voxel] = starts_[line.start];
+    if (line.end_voxel == sensor_voxel) return;
+    Eigen::Vector3f direction = line.end - sensor;
     const auto length_m = static_cast<float>(norm_of(direction));
     direction /= length_m;
     const auto bit_of = [&](const Voxel& v) {
       return bits.at({v.x - corner.x, v.y - corner.y, v.z - corner.z});
     };
     const Voxel& end = line.end_voxel;
-    const int steps = std::abs(end.x - sensor_voxel_.x) + std::abs(end.y - sensor_voxel_.y) +
-                      std::abs(end.z - sensor_voxel_.z);
-    rays.push_back({BorderCrossings(sensor_.cast<double>(), direction.cast<double>(), sensor_voxel_,
+    const int steps = std::abs(end.x - sensor_voxel.x) + std::abs(end.y - sensor_voxel.y) +
+                      std::abs(end.z - sensor_voxel.z);
+    rays.push_back({BorderCrossings(sensor.cast<double>(), direction.cast<double>(), sensor_voxel,
                                     config_.voxel_size_m),
-                    length_m, bit_of(sensor_voxel_), bit_of(end),
+                    length_m, bit_of(sensor_voxel), bit_of(end),
                     static_cast<std::uint32_t>(steps)});
   }
 
  private:
-  Line line_to(const Eigen::Vector3f& point) const {
-    Eigen::Vector3f direction = point - sensor_;
+  void add_start(const Eigen::Vector3d& sensor_m) {
+    const Eigen::Vector3f at = sensor_m.cast<float>();
+    starts_.push_back({at, voxel_at(at, voxels_per_m_)});
+  }
+
+  Line line_to(std::size_t start, const Eigen::Vector3f& point) const {
+    const Eigen::Vector3f& sensor = starts_[start].at;
+    Eigen::Vector3f direction = point - sensor;
     const double length_m = norm_of(direction);
-    if (length_m <= config_.max_range_m) return {point, voxel_at(point, voxels_per_m_), false};
+    if (length_m <= config_.max_range_m) {
+      return {start, point, voxel_at(point, voxels_per_m_), false};
+    }
     direction /= static_cast<float>(length_m);
-    const Eigen::Vector3f end = sensor_ + direction * static_cast<float>(config_.max_range_m);
-    return {end, voxel_at(end, voxels_per_m_), true};
+    const Eigen::Vector3f end = sensor + direction * static_cast<float>(config_.max_range_m);
+    return {start, end, voxel_at(end, voxels_per_m_), true};
   }
 
   const Config& config_;
   double voxels_per_m_;
-  Eigen::Vector3f sensor_;
-  Voxel sensor_voxel_;
+  std::vector<Start> starts_;
   std::vector<Line> lines_;
   std::vector<std::size_t> point_of_line_;
 };

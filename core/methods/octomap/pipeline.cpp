@@ -24,7 +24,7 @@ struct HeldScan {
 class Pipeline final : public SequentialMethod {
  public:
   Pipeline(const Config& config, const RunContext& context)
-      : SequentialMethod(context, kReach_m), config_(checked(config)), map_(config) {}
+      : SequentialMethod(context, kReach_m, true), config_(checked(config)), map_(config) {}
 
   std::optional<MemoryUse> memory() const override;
 

@@ -43,7 +43,8 @@ MethodKind method_kind() {
       .check = check_settings,
       .make = make,
       .score_name = "log-odds of free space",
-      .threshold_name = "free above"};
+      .threshold_name = "free above",
+      .takes_origins = true};
 }
 
 }  // namespace mosbench::octomap

@@ -41,6 +41,7 @@ class Scan:
     #: float32 (N,), of the surface relative to the sensor, positive away from it; of an Aeva, else None
     radial_velocity_m_s: Optional[Array]
     truth: Optional[Array]  #: uint32 (N,), raw labels: id, and in the upper 16 bits instance; None without
+    origins: Optional[Array] = None  #: float64 (N, 3), where rays start, of several LiDARs; else None
 
     @property
     def truth_ids(self) -> Optional[Array]:

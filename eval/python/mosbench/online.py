@@ -211,13 +211,15 @@ class MOS:
         parts += [f"{name}={value!r}" for name, value in self._config.changed().items()]
         return f"MOS({', '.join(parts)})"
 
-    def push(self, points: Any, pose: Any) -> list[Labels]:
+    def push(self, points: Any, pose: Any, origins: Any = None) -> list[Labels]:
         """Takes a scan in and returns the scans whose labels became final.
 
         points: (N, 3) or (N, 4), sensor frame, metres; float32 (N, 4) in C order is not copied.
         pose: (4, 4), map_from_sensor.
+        origins: (N, 3), where the ray of each point starts, of several sensors; None: at the sensor.
         """
-        return [Labels(**scan) for scan in self._method.push(as_array(points, "points"), as_array(pose, "pose"))]
+        cloud = as_array(points, "points"), as_array(pose, "pose")
+        return [Labels(**scan) for scan in self._method.push(*cloud, *_places(origins))]
 
     def finish(self) -> list[Labels]:
         """Returns what a delay still holds back. Nothing can be pushed after it."""
@@ -232,6 +234,19 @@ class MOS:
     def memory_bytes(self) -> Optional[int]:
         """Of the method's containers; None when it does not measure them."""
         return self._method.memory_bytes()
+
+
+def _places(origins: Any) -> tuple[Array, Array]:
+    """Returns the different rows of origins, and which of them is each point's."""
+    if origins is None:
+        return np.empty((0, 3)), np.empty(0, np.uint8)
+    origins = as_array(origins, "origins")
+    if origins.ndim != 2 or origins.shape[1] != 3:
+        raise ValueError(f"origins: has shape {origins.shape}, expected (N, 3)")
+    places, place_of_point = np.unique(origins.astype(np.float64), axis=0, return_inverse=True)
+    if len(places) > 256:
+        raise ValueError(f"origins: are {len(places)} places, expected at most 256")
+    return places, place_of_point.reshape(-1).astype(np.uint8)
 
 
 @dataclasses.dataclass(frozen=True)

@@ -67,6 +67,24 @@ void expect_motion(const Tally& tally, std::size_t sequences) {
   EXPECT_GE(tally.moving_points, tally.sequences * 20);
 }
 
+TEST(PipelineAgainstTheSlowTwin, AgreesOnRigsOfTwoSensors) {
+  Tally tally;
+  std::size_t changed = 0;
+  for (unsigned seed = 0; seed < 8; ++seed) {
+    const SmallWorld rig = small_world({.seed = seed, .mounts_m = two_mounts()});
+    Config config = small_world_config();
+    config.max_range_m = seed % 2 == 0 ? 5.0 : 2.5;
+    config.delay_scans = seed % 3 == 0 ? 2 : 0;
+    expect_equal_labels_of_both_variants(rig, config, tally);
+    SmallWorld one = rig;
+    one.origins.clear();
+    changed +=
+        labels_of(rig, config, Variant::kPaper2024) != labels_of(one, config, Variant::kPaper2024);
+  }
+  expect_motion(tally, 16);
+  EXPECT_GT(changed, 1U) << "rays of one origin give the same";
+}
+
 TEST(PipelineAgainstTheSlowTwin, AgreesWithThePapersParameters) {
   Tally tally;
   for (unsigned seed = 0; seed < 12; ++seed) {

@@ -70,6 +70,18 @@ TEST(PlusAgainstItsTwin, AgreesOnlineAndForEveryDelay) {
   for (const std::size_t points : tally.reasons) EXPECT_GT(points, 20U);
 }
 
+TEST(PlusAgainstItsTwin, AgreesOnRigsOfTwoSensors) {
+  PlusTally tally;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    hmm_mos_plus::Config config = small_plus();
+    config.map.delay_scans = seed % 2 == 0 ? 0 : 3;
+    expect_twins_labels(small_world({.seed = seed, .scans = 20, .mounts_m = two_mounts()}), config,
+                        tally);
+  }
+  EXPECT_EQ(tally.sequences, 4U);
+  EXPECT_GT(tally.moving_points, 400U);
+}
+
 /// With rays enough to see boxes whole.
 TEST(PlusAgainstItsTwin, AgreesOnWhatIsPredicted) {
   PlusTally tally;

@@ -103,6 +103,17 @@ TEST_P(EveryMethod, RefusesWhatIsOutOfReachAndPosesThatAreNotRigid) {
   EXPECT_NO_THROW(method->push(kWall, Pose::Identity()));
 }
 
+TEST_P(EveryMethod, RefusesOriginsThatDoNotFitThePoints) {
+  const auto method = make();
+  const Eigen::Vector3d place(1, 0, 0);
+  const double nan = std::nan("");
+  for (const RayOrigins& wrong :
+       {RayOrigins{{place}, {0, 0, 0}}, RayOrigins{{place}, {}}, RayOrigins{{place}, {0, 0, 0, 1}},
+        RayOrigins{{}, {0, 0, 0, 0}}, RayOrigins{{{nan, 0, 0}}, {0, 0, 0, 0}}}) {
+    EXPECT_THROW(method->push(kWall, Pose::Identity(), wrong), std::invalid_argument);
+  }
+}
+
 TEST_P(EveryMethod, RefusesScansBeyondTheirCountAndAfterTheEnd) {
   const auto counted = make({.scan_count = 1});
   counted->push(kWall, Pose::Identity());

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 
@@ -49,7 +50,8 @@ Triples walk_all(const VoxelSet& measured, const Voxel& sensor, double voxel_siz
 /// The observed voxels; asserts that no block comes twice or empty.
 Triples observed_by(const VoxelSet& measured, const Voxel& sensor, double voxel_size_m,
                     double max_range_m, RaycastScratch& scratch, ThreadPool& pool) {
-  const VoxelList observed = raycast(measured, sensor, voxel_size_m, max_range_m, scratch, pool);
+  const RaySource source{measured, sensor, voxel_size_m, max_range_m};
+  const VoxelList observed = raycast({&source, 1}, scratch, pool);
   VoxelSet unique;
   for (std::size_t i = 0; i < observed.blocks.size(); ++i) {
     EXPECT_EQ(unique.insert(observed.blocks[i]), i) << "a block comes twice";
@@ -145,6 +147,29 @@ TEST(Raycast, ReachesTheLongestRange) {
   const VoxelSet measured = wide_set(ends);
   EXPECT_EQ(observed_by(measured, {}, 1.0, kMaxRangeVoxels),
             walk_all(measured, {}, 1.0, kMaxRangeVoxels));
+}
+
+TEST(Raycast, SeveralSensorsSeeWhatEachSeesAloneAndNothingBetweenTheirOrigins) {
+  std::mt19937 random(24);
+  ThreadPool one(1), three(3);
+  RaycastScratch scratch;
+  const Voxel left{-4, 0, 0}, right{4, 1, 1};  // 2 m apart
+  for (int round = 0; round < 20; ++round) {
+    const VoxelSet of_left = voxel_set(random_triples(random, 60, 30));
+    const VoxelSet of_right = voxel_set(random_triples(random, 60, 50));
+    const double range_m = 2.0 + round;
+    Triples expected = walk_all(of_left, left, 0.25, range_m);
+    expected.merge(walk_all(of_right, right, 0.25, range_m));
+    const std::array sources{RaySource{of_left, left, 0.25, range_m},
+                             RaySource{of_right, right, 0.25, range_m}};
+    for (ThreadPool* pool : {&one, &three}) {
+      const VoxelList observed = raycast(sources, scratch, *pool);
+      ASSERT_EQ(triples(observed.blocks, observed.masks), expected) << "round " << round;
+    }
+    Triples from_one = walk_all(of_left, left, 0.25, range_m);
+    from_one.merge(walk_all(of_right, left, 0.25, range_m));
+    ASSERT_NE(from_one, expected);
+  }
 }
 
 TEST(Raycast, ThreadsAndReusedMemoryChangeNothing) {

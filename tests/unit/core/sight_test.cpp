@@ -59,6 +59,19 @@ TEST(Sight, GoesAllAround) {
   }
 }
 
+TEST(SightImage, LooksFromEachPlaceThatRaysStartAt) {
+  // The left sensor sees a wall, the right one a board before it.
+  const std::vector<Point> points = {{10, -1, 0, 0}, {5, 1, 0, 0}};
+  const SightImage rig(points, 0.5, {{{0, -1, 0}, {0, 1, 0}}, {0, 1}});
+  EXPECT_EQ(rig.at({5, -1, 0}), Sight::kThrough);
+  EXPECT_EQ(rig.at({5, 1, 0}), Sight::kHit);
+  EXPECT_EQ(rig.at({8, 1, 0}), Sight::kHidden);
+  EXPECT_TRUE(rig.repeats({10, -1, 0}));
+  EXPECT_FALSE(rig.repeats({5, -1, 0}));
+  EXPECT_EQ(SightImage(points, 0.5).at({8, -0.8F, 0}), Sight::kThrough) << "from one place";
+  EXPECT_EQ(rig.at({8, -0.8F, 0}), Sight::kHidden);
+}
+
 TEST(Looks, CountWhatWasSeenThroughAndHitBeforeAndAfter) {
   const SightImage image(wall_of_points(), 0.5);
   Look before{&image, Eigen::Isometry3f::Identity(), true}, after = before, nearer = before;

@@ -49,6 +49,30 @@ TEST(Voxelize, LeavesOutPointsExactlyAtTheMinimumRange) {
   EXPECT_EQ(scan.occupied_count, 1U);
 }
 
+TEST(Voxelize, MeasuresRangesFromEachPointsOwnOrigin) {
+  // Points 1, 6 and 11 m from the first sensor, which are 9, 4 and 1 m from the second.
+  const std::vector<Point> line = {{1, 0, 0, 0}, {6, 0, 0, 0}, {11, 0, 0, 0},
+                                   {1, 0, 0, 0}, {6, 0, 0, 0}, {11, 0, 0, 0}};
+  const RayOrigins origins{{{0, 0, 0}, {10, 0, 0}}, {0, 0, 0, 1, 1, 1}};
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(0, 2, 0);
+  ThreadPool pool(2);
+  const VoxelizedScan scan =
+      voxelize(line, pose, VoxelGrid{.voxel_size_m = 0.25}, 3, 8, pool, origins);
+  EXPECT_EQ(scan.voxel_of_point[0], kNoVoxel);
+  EXPECT_NE(scan.voxel_of_point[1], kNoVoxel);
+  EXPECT_NE(scan.voxel_of_point[2], kNoVoxel);
+  EXPECT_NE(scan.voxel_of_point[3], kNoVoxel);
+  EXPECT_EQ(scan.voxel_of_point[4], scan.voxel_of_point[1]);
+  EXPECT_EQ(scan.voxel_of_point[5], kNoVoxel);
+  EXPECT_EQ(triples(scan.measured), (Triples{{4, 8, 0}, {24, 8, 0}, {44, 8, 0}}));
+  EXPECT_EQ(scan.occupied_count, 1U) << "9 and 11 m are beyond the range";
+  ASSERT_EQ(scan.by_origin.size(), 2U);
+  EXPECT_EQ(triples(scan.by_origin[0].measured), (Triples{{24, 8, 0}, {44, 8, 0}}));
+  EXPECT_EQ(triples(scan.by_origin[1].measured), (Triples{{4, 8, 0}, {24, 8, 0}}));
+  EXPECT_EQ(triple(scan.by_origin[1].sensor_voxel), (Triple{40, 8, 0}));
+}
+
 TEST(Voxelize, LeavesOutPointsAtTheSensorWithoutMinimumRange) {
   const VoxelizedScan scan = voxelize_at_origin({{0, 0, 0, 0}, {1e-3F, 0, 0, 0}});
   EXPECT_EQ(scan.voxel_of_point[0], kNoVoxel);

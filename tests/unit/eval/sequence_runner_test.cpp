@@ -55,7 +55,8 @@ class BrokenMethod : public Method {
  public:
   explicit BrokenMethod(bool silent) : silent_(silent) {}
   using Method::push;
-  std::unique_ptr<Observed> observe(std::span<const Point>, const Pose&) override {
+  std::unique_ptr<Observed> observe(std::span<const Point>, const Pose&,
+                                    const RayOrigins&) override {
     return std::make_unique<Observed>();
   }
   std::vector<LabelledScan> push(std::unique_ptr<Observed>) override {

@@ -1,0 +1,33 @@
+#include "datasets/formats/mounts_file.hpp"
+
+#include <span>
+#include <vector>
+
+#include "datasets/formats/pose_file.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
+
+namespace mosbench {
+
+std::map<std::string, Pose> parse_mounts(std::string_view text, const std::filesystem::path& file) {
+  constexpr const char* kRow = "name tx ty tz qx qy qz qw, blanks between";
+  constexpr std::size_t kNumbers = 7;
+  std::map<std::string, Pose> mounts;
+  for (const TextLine& line : split_lines(text, file)) {
+    const std::vector<std::string_view> words = split_at_blanks(line.text);
+    if (words.size() != kNumbers + 1) {
+      throw DataError(file, line.number, counted(words.size(), "word") + " in the row", kRow);
+    }
+    const auto n = parse_numbers(std::span(words).subspan(1), [&](std::string_view word) {
+      throw DataError(file, line.number, quoted(word) + " is no finite number", kRow);
+    });
+    const auto mount = pose_of({n[0], n[1], n[2]}, {n[3], n[4], n[5], n[6]});
+    if (!mount) throw DataError(file, line.number, "the quaternion is not of length 1", kRow);
+    if (!mounts.emplace(words.front(), *mount).second) {
+      throw DataError(file, line.number, "a second row of " + quoted(words.front()), "one");
+    }
+  }
+  return mounts;
+}
+
+}  // namespace mosbench

@@ -1,0 +1,75 @@
+#include "datasets/layouts/corrections.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "datasets/sequence/corrected_sequence.hpp"
+#include "datasets/sequence/ego_points.hpp"
+#include "datasets/sequence/scan_range.hpp"
+#include "datasets/text/errors.hpp"
+
+namespace mosbench {
+namespace {
+
+/// Whether several LiDARs were merged.
+bool is_rig(const Sequence& sequence) { return !sequence.reading().lidars.empty(); }
+
+/// The sequence with the times of its points, and deskewed by them unless its poses are found
+/// later.
+std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
+                                           const Reading& reading) {
+  if (!reading.undistorts() && !is_rig(*sequence)) return sequence;
+  const ReadingDone& done = sequence->reading();
+  if (reading.deskew && !reading.point_times && done.point_times.empty() && !done.undistortion &&
+      !is_rig(*sequence)) {
+    throw UsageError(fmt::format("{}: the points of {} have no times, expected {} or azimuth",
+                                 option("deskew"), sequence->name(),
+                                 option("point_times", "column")));
+  }
+  if (reading.point_times == PointTimes::kAzimuth) {
+    sequence = with_azimuth_times(std::move(sequence));
+  }
+  const bool later = reading.is_by_odometry() || deskews_by_refined_poses(reading);
+  const std::optional<Deskew> by = deskew_of(*sequence, reading);
+  return later || !by ? std::move(sequence) : deskewed(std::move(sequence), *by);
+}
+
+}  // namespace
+
+void check_lidars(const Reading& asked, bool is_recording) {
+  if (!asked.lidars) return;
+  lidar_names(asked);
+  const auto refuse = [](const std::string& what, const std::string& expected) {
+    throw UsageError(fmt::format("{}: {}, expected {}", option("lidars"), what, expected));
+  };
+  if (!is_recording) refuse("is for recordings of your own", "one of these");
+  if (asked.topic) refuse("and " + option("topic") + " name topics", "one of both");
+  if (!asked.is_rig()) return;
+  if (asked.point_times == PointTimes::kAzimuth || asked.hdl64_correction) {
+    refuse("merges several, and azimuths and the correction of an HDL-64E are those of one", "one");
+  }
+}
+
+std::optional<Deskew> deskew_of(const Sequence& sequence, const Reading& reading) {
+  const ReadingDone& done = sequence.reading();
+  const Deskew by = reading.deskew.value_or(Deskew::kPoses);
+  if (is_rig(sequence)) return by;
+  const bool has_times = reading.point_times == PointTimes::kAzimuth || by == Deskew::kVelocity ||
+                         (!done.point_times.empty() && !done.undistortion);
+  return by != Deskew::kNone && has_times ? std::optional(by) : std::nullopt;
+}
+
+bool deskews_by_refined_poses(const Reading& reading) {
+  return reading.refine_poses && !reading.perturb && !reading.is_rig();
+}
+
+std::unique_ptr<Sequence> corrected(std::unique_ptr<Sequence> sequence, const Reading& reading) {
+  if (reading.drop_scans == Drop::kAuto) sequence = without_useless_scans(std::move(sequence));
+  if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
+  // What is mounted stays in the frame in which points were measured.
+  if (reading.drop_ego == Drop::kAuto) sequence = without_ego(std::move(sequence));
+  return with_point_times(std::move(sequence), reading);
+}
+
+}  // namespace mosbench

@@ -1,0 +1,96 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.hpp"
+#include "tests/rig_drive.hpp"
+
+/// Several LiDARs of a bag, from the command line.
+namespace mosbench {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class RigInABag : public testing::Test {
+ protected:
+  void SetUp() override { folder_.write("drive.bag", drive_.bag()); }
+  std::string path(const char* name) const { return (folder_ / name).string(); }
+  cli::Answer run(std::vector<std::string> words, const char* lidars = "/a,/b") const {
+    words.insert(words.begin() + 1, path("drive.bag"));
+    words.insert(words.end(), {"--read", std::string("lidars=") + lidars});
+    return cli::run(words);
+  }
+
+  RigDrive drive_{.scans = 8};
+  TempFolder folder_;
+};
+
+TEST_F(RigInABag, IsSegmentedAsOneAndSaysSo) {
+  const cli::Answer answer = run({"run", "--out", path("out")});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const auto json = nlohmann::json::parse(read_file(folder_ / "out/drive/result.json"));
+  EXPECT_EQ(json.at("reading").at("lidars"), "/a, /b mounted 2.000 m away") << json.dump(1);
+  EXPECT_EQ(json.at("reading").at("deskew"), "poses");
+  EXPECT_THAT(json.dump(), HasSubstr("rays start at each point's own"));
+  const std::size_t points = drive_.scan(0, 3).labels.size() + drive_.scan(1, 3).labels.size();
+  EXPECT_EQ(read_file(folder_ / "out/drive/labels/000003.label").size(), 4 * points);
+  // The same command resumes, and another rig is not taken for this one.
+  EXPECT_EQ(run({"run", "--out", path("out")}).exit_code, 0);
+  EXPECT_NE(run({"run", "--out", path("out")}, "/b,/a").exit_code, 0);
+  EXPECT_EQ(cli::run({"report", path("out"), "-o", path("out.html")}).exit_code, 0);
+}
+
+TEST_F(RigInABag, IsReadByEveryCommand) {
+  EXPECT_LE(run({"doctor"}).exit_code, 1);
+  EXPECT_LE(run({"odometry", "-o", path("poses.tum")}).exit_code, 1);
+  EXPECT_EQ(run({"run", "--out", path("1"), "--perturb", "dropout_probability=0.5"}).exit_code, 0);
+  EXPECT_EQ(run({"run", "--out", path("2"), "--refine-poses"}).exit_code, 0);
+  EXPECT_EQ(run({"run", "--out", path("3"), "--odometry", "kiss"}).exit_code, 0);
+  EXPECT_EQ(run({"profile"}).exit_code, 0);
+}
+
+TEST_F(RigInABag, NeedsLidarsToBeNamed) {
+  const cli::Answer answer = cli::run({"run", path("drive.bag"), "--out", path("out")});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err,
+              HasSubstr("holds several PointCloud2 topics: /a, /b, expected one of them, --topic "
+                        "/a, or two to six of a rig, which are merged: --read lidars=/a,/b"));
+  EXPECT_EQ(run({"run", "--out", path("out")}, "/b").exit_code, 0);
+}
+
+TEST_F(RigInABag, IsRefusedByMethodsThatLookFromOnePlace) {
+  const cli::Answer answer = run({"run", "--out", path("out"), "--method", "yoon"});
+  EXPECT_EQ(answer.exit_code, 2);
+  EXPECT_THAT(answer.err,
+              AllOf(HasSubstr("--method yoon: looks from one place, not from those of /a, /b "
+                              "mounted 2.000 m away, expected one LiDAR, --read lidars=NAME"),
+                    Not(HasSubstr("scan 000"))));
+}
+
+TEST_F(RigInABag, LosesItsOriginsInACopyWhichSaysSo) {
+  const cli::Answer answer = run({"convert", "--layout", "semantickitti", "-o", path("copy")});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.err, HasSubstr("8 scans were merged of several LiDARs: in the copy, rays of "
+                                    "all points start at the first"));
+  const cli::Answer copy = cli::run({"run", path("copy"), "--out", path("out")});
+  ASSERT_EQ(copy.exit_code, 0) << copy.err;
+  EXPECT_THAT(copy.out + copy.err,
+              HasSubstr("rays of all points start at the first LiDAR, as the copy does not keep "
+                        "which are whose: of /a, /b mounted 2.000 m away"));
+}
+
+TEST_F(RigInABag, NeedsMounts) {
+  folder_.write("drive.bag", drive_.bag(1));
+  const cli::Answer answer = run({"run", "--out", path("out")});
+  EXPECT_EQ(answer.exit_code, 3);
+  EXPECT_THAT(answer.err, HasSubstr("/tf_static does not lead from lidar_b to lidar_a (base, "
+                                    "lidar_a), expected the mounts of both LiDARs there, or one "
+                                    "LiDAR in --read lidars"));
+}
+
+}  // namespace
+}  // namespace mosbench
