@@ -22,7 +22,8 @@ struct RigDrive {
   std::size_t scans = 12;
   double later_s = 0.03;  ///< the second LiDAR's scans
   double speed_m_s = 5;
-  bool timed = false;  ///< points are measured within 0.1 s, and say when
+  bool has_tf_static = true;  ///< else mounts are repeated in /tf
+  bool timed = false;         ///< points are measured within 0.1 s, and say when
   std::vector<Pose> mounts = {pose_at({1, 0, 0}, 0), pose_at({-1, 0, 0}, 1.5)};  ///< on the vehicle
   std::vector<std::string> frames = {"lidar_a", "lidar_b"};  ///< those with a mount in the bag
 
@@ -91,13 +92,20 @@ struct RigDrive {
                        {"/b", std::string(kPointCloud2)},
                        {"/tf", std::string(kTfMessage)},
                        {"/tf_static", std::string(kTfMessage)}};
-    std::vector<StampedTransform> fixed;
-    for (std::size_t i = 0; i < mounted; ++i) fixed.push_back({0, "base", frames[i], mounts[i]});
-    bag.chunks.push_back({{3, ns_of(-1), format_tf_message(fixed)}});
+    const auto mounts_at = [&](std::int64_t stamp_ns) {
+      std::vector<StampedTransform> all;
+      for (std::size_t i = 0; i < mounted; ++i) {
+        all.push_back({stamp_ns, "base", frames[i], mounts[i]});
+      }
+      return all;
+    };
+    bag.chunks.push_back({});
+    if (has_tf_static) bag.chunks.back().push_back({3, ns_of(-1), format_tf_message(mounts_at(0))});
     for (int i = -20; i < static_cast<int>(5 * scans) + 30; ++i) {
-      const double s = 0.02 * i;
-      bag.chunks.back().push_back(
-          {2, ns_of(s), format_tf_message({{ns_of(s), "map", "base", vehicle_at(s)}})});
+      const std::int64_t at_ns = ns_of(0.02 * i);
+      auto transforms = has_tf_static ? std::vector<StampedTransform>{} : mounts_at(at_ns);
+      transforms.push_back({at_ns, "map", "base", vehicle_at(0.02 * i)});
+      bag.chunks.back().push_back({2, at_ns, format_tf_message(transforms)});
     }
     for (std::size_t k = 0; k < scans; ++k) {
       for (std::size_t lidar = 0; lidar < 2; ++lidar) {

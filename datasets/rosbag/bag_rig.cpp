@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -16,20 +17,31 @@
 namespace mosbench {
 namespace {
 
-/// What /tf_static says, in both directions: sensors are siblings in its tree.
+/// The transforms that never change, in both directions: sensors are siblings in their tree.
 std::vector<StampedTransform> mounts_in(const BagReader& bag) {
-  std::vector<StampedTransform> mounts;
-  for (const BagMessage& message : bag.messages("/tf_static")) {
-    for (StampedTransform& mount :
-         parse_transforms(bag.read(message), bag.format_of(message), bag.path())) {
-      if (!mount.is_sound) continue;
-      mounts.push_back(mount);
-      std::swap(mount.parent, mount.child);
-      mount.parent_from_child = mount.parent_from_child.inverse();
-      mounts.push_back(std::move(mount));
+  std::map<std::pair<std::string, std::string>, StampedTransform> mounts;
+  std::set<std::pair<std::string, std::string>> changing;
+  for (const char* topic : {"/tf_static", "/tf"}) {
+    for (const BagMessage& message : bag.messages(topic)) {
+      for (const StampedTransform& mount :
+           parse_transforms(bag.read(message), bag.format_of(message), bag.path())) {
+        const std::pair frames(mount.parent, mount.child);
+        if (!mount.is_sound) continue;
+        const auto [known, is_new] = mounts.try_emplace(frames, mount);
+        if (!is_new && mount.parent_from_child.matrix() != known->second.parent_from_child.matrix())
+          changing.insert(frames);
+      }
     }
   }
-  return mounts;
+  std::vector<StampedTransform> both;
+  for (auto& [frames, mount] : mounts) {
+    if (changing.contains(frames)) continue;
+    both.push_back(mount);
+    std::swap(mount.parent, mount.child);
+    mount.parent_from_child = mount.parent_from_child.inverse();
+    both.push_back(std::move(mount));
+  }
+  return both;
 }
 
 /// The frame of the first scan of a topic; BagSequence checks that all have it.
@@ -53,10 +65,9 @@ class Mounts {
     for (const StampedTransform& mount : known_) frames.insert(mount.child);
     throw DataError(
         bag_.path(),
-        fmt::format(
-            "/tf_static does not lead from {} to {} ({})", frame, first_,
-            frames.empty() ? "it has no frame" : fmt::format("{}", fmt::join(frames, ", "))),
-        fmt::format("the mounts of both LiDARs there, or one LiDAR in {}", option("lidars")));
+        fmt::format("no transform that never changes leads from {} to {} ({})", frame, first_,
+                    frames.empty() ? "there is none" : fmt::format("{}", fmt::join(frames, ", "))),
+        fmt::format("the mounts of both in /tf_static, or one LiDAR in {}", option("lidars")));
   }
 
  private:

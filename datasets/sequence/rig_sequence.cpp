@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -70,25 +71,40 @@ RigSequence::RigSequence(std::vector<RigLidar> lidars,
   state();
 }
 
+/// How far partners may be away.
+double RigSequence::half_step_ms() const {
+  return usual_step_s(recording().scans).value_or(0.1) * 1e3 / 2;
+}
+
 RigSequence::Partners RigSequence::partners_of(const RigLidar& lidar) const {
   const auto stamps = stamps_of(lidar);
-  const double half_s = usual_step_s(recording().scans).value_or(0.1) / 2;
-  const auto half_ns = static_cast<std::int64_t>(half_s * 1e9);
-  Partners partners;
-  for (const ScanEntry& scan : recording().scans) {
-    const std::int64_t at_ns = *scan.stamp_ns;
+  const std::int64_t half_ns = std::llround(half_step_ms() * 1e6);
+  Partners partners(recording().scans.size());
+  // Who takes each scan so far, and from how far away: none is taken twice.
+  std::vector<std::pair<std::int64_t, std::size_t>> takers(stamps.size(), {half_ns + 1, 0});
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    const std::int64_t at_ns = *recording().scans[k].stamp_ns;
     const auto after = std::ranges::lower_bound(stamps, std::pair(at_ns, std::size_t{0}));
-    std::optional<std::size_t>& partner = partners.emplace_back();
     std::int64_t least_ns = half_ns + 1;
     for (auto near = after == stamps.begin() ? after : std::prev(after);
          near != stamps.end() && near <= after; ++near) {
-      const std::int64_t away_ns = std::abs(near->first - at_ns);
-      if (away_ns < least_ns) partner = near->second;
+      // One exactly between two scans belongs to the first.
+      const std::int64_t away_ns = near < after ? at_ns - near->first + 1 : near->first - at_ns;
+      if (away_ns < least_ns) partners[k] = near->second;
       least_ns = std::min(least_ns, away_ns);
     }
+    if (!partners[k]) continue;
+    auto& [taken_ns, taker] = takers[*partners[k]];
+    if (taken_ns <= least_ns) {
+      partners[k].reset();
+      continue;
+    }
+    if (taken_ns <= half_ns) partners[taker].reset();
+    taken_ns = least_ns;
+    taker = k;
   }
   const auto found = std::ranges::count_if(partners, [](const auto& p) { return p.has_value(); });
-  const std::string limit = fmt::format("within {:g} ms", half_s * 1e3);
+  const std::string limit = fmt::format("within {:g} ms", half_step_ms());
   if (found == 0) {
     const auto first = stamps_of(lidars_.front());
     throw DataError(
@@ -118,8 +134,8 @@ void RigSequence::take_in(const RigLidar& lidar, const Partners& partners) {
     all.scans[k].has_truth = all.scans[k].has_truth && scan.has_truth;
   }
   if (missing > 0) {
-    all.remarks.push_back(fmt::format("{}: {} of {} have no scan of it within half a step",
-                                      lidar.name, missing, counted(partners.size(), "scan")));
+    all.remarks.push_back(fmt::format("{}: {} of {} have no scan of it within {:g} ms", lidar.name,
+                                      missing, counted(partners.size(), "scan"), half_step_ms()));
   }
   const std::size_t merged = partners.size() - missing;
   if (own.scans.size() > merged) {

@@ -39,6 +39,7 @@ class RigSequence : public Sequence {
   /// For each scan of the first LiDAR that of another, where there is one.
   using Partners = std::vector<std::optional<std::size_t>>;
 
+  double half_step_ms() const;
   Partners partners_of(const RigLidar& lidar) const;
   void take_in(const RigLidar& lidar, const Partners& partners);
   void state();

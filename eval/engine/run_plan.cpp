@@ -44,6 +44,12 @@ fs::path default_out(const RunPlan& plan) {
     std::ranges::replace(range, ':', '_');
     add("scans" + range);
   }
+  if (reading.lidars) {
+    std::string lidars = *reading.lidars;
+    std::ranges::replace_if(
+        lidars, [](char c) { return c == '/' || c == ','; }, '_');
+    add("lidars" + lidars);
+  }
   if (plan.odometry) add(plan.odometry->kind->name);
   if (reading.is_static()) add(kStaticPoses);
   if (reading.perturb) add(to_string(*reading.perturb));
@@ -175,6 +181,22 @@ void check_shared_folder(const RunPlan& plan) {
   }
 }
 
+/// Throws UsageError for a rig and a method that looks from one place.
+void check_origins(const Dataset& dataset, const MethodKind& method) {
+  std::vector<std::string_view> others;
+  for (const MethodKind& other : methods()) {
+    if (other.takes_origins && !other.is_twin) others.push_back(other.name);
+  }
+  for (const auto& sequence : dataset.sequences) {
+    const std::string& lidars = sequence->reading().lidars;
+    if (lidars.empty() || method.takes_origins) continue;
+    throw UsageError(fmt::format(
+        "{} looks from one place, not from those of {}, expected one LiDAR, {}, or one of the "
+        "methods {}",
+        method.name, lidars, option("lidars", "NAME"), fmt::join(others, ", ")));
+  }
+}
+
 }  // namespace
 
 RunPlan open_job(const Job& job, unsigned threads, const std::shared_ptr<SharedReading>& shared) {
@@ -194,6 +216,7 @@ RunPlan open_job(const Job& job, unsigned threads, const std::shared_ptr<SharedR
   RunSettings& settings = plan.settings;
   settings.method = job.segment.method;
   settings.threads = threads;
+  check_origins(plan.dataset, *settings.method);
   note_lacking_settings(preset, plan);
   settings.method_settings = settings_of(job, plan.dataset.kind);
   const ScoreRule rule = rule_of(job, plan.dataset.kind);

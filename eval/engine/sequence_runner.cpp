@@ -65,14 +65,8 @@ auto naming_scan(const Sequence& sequence, std::size_t scan_index, Work&& work) 
   }
 }
 
-/// Returns the conditions under which the method of `settings` runs on a sequence. Throws
-/// UsageError for one that cannot.
+/// Returns the conditions under which the method of `settings` runs on a sequence.
 RunContext context_of(const Sequence& sequence, const RunSettings& settings) {
-  if (!sequence.reading().lidars.empty() && !settings.method->takes_origins) {
-    throw UsageError(fmt::format(
-        "--method {}: looks from one place, not from those of {}, expected one LiDAR, {}",
-        settings.method->name, sequence.reading().lidars, option("lidars", "NAME")));
-  }
   RunContext context{
       .threads = settings.threads, .scan_count = sequence.size(), .scores = settings.keeps_scores};
   for (const ScanEntry& scan : sequence.recording().scans) {

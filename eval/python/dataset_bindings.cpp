@@ -42,7 +42,7 @@ py::object origins_of(const RayOrigins& origins) {
   for (std::size_t i = 0; i < origins.of_point.size(); ++i, row += 3) {
     Eigen::Map<Eigen::Vector3d>{row} = origins.at(i);
   }
-  return std::move(rows);
+  return rows;
 }
 
 py::dict read_scan(const OpenSequence& opened, std::size_t scan_index) {

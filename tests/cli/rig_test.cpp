@@ -65,14 +65,16 @@ TEST_F(RigInABag, NeedsLidarsToBeNamed) {
 TEST_F(RigInABag, IsRefusedByMethodsThatLookFromOnePlace) {
   const cli::Answer answer = run({"run", "--out", path("out"), "--method", "yoon"});
   EXPECT_EQ(answer.exit_code, 2);
-  EXPECT_THAT(answer.err,
-              AllOf(HasSubstr("--method yoon: looks from one place, not from those of /a, /b "
-                              "mounted 2.000 m away, expected one LiDAR, --read lidars=NAME"),
-                    Not(HasSubstr("scan 000"))));
+  EXPECT_THAT(
+      answer.err,
+      AllOf(HasSubstr("mosbench: yoon looks from one place, not from those of /a, /b "
+                      "mounted 2.000 m away, expected one LiDAR, --read lidars=NAME, or one of "
+                      "the methods hmm-mos, hmm-mos-plus, dufomap, octomap"),
+            Not(HasSubstr("scan 000"))));
 }
 
 TEST_F(RigInABag, LosesItsOriginsInACopyWhichSaysSo) {
-  const cli::Answer answer = run({"convert", "--layout", "semantickitti", "-o", path("copy")});
+  const cli::Answer answer = run({"convert", "--layout", "semantickitti", "--out", path("copy")});
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
   EXPECT_THAT(answer.err, HasSubstr("8 scans were merged of several LiDARs: in the copy, rays of "
                                     "all points start at the first"));
@@ -87,9 +89,10 @@ TEST_F(RigInABag, NeedsMounts) {
   folder_.write("drive.bag", drive_.bag(1));
   const cli::Answer answer = run({"run", "--out", path("out")});
   EXPECT_EQ(answer.exit_code, 3);
-  EXPECT_THAT(answer.err, HasSubstr("/tf_static does not lead from lidar_b to lidar_a (base, "
-                                    "lidar_a), expected the mounts of both LiDARs there, or one "
-                                    "LiDAR in --read lidars"));
+  EXPECT_THAT(answer.err,
+              HasSubstr("no transform that never changes leads from lidar_b to lidar_a (base, "
+                        "lidar_a), expected the mounts of both in /tf_static, or one LiDAR in "
+                        "--read lidars"));
 }
 
 }  // namespace

@@ -106,6 +106,12 @@ TEST_F(Rig, MovesScansOfAnotherStampAlsoWherePointsAreNotUndistorted) {
   expect_right(*opened({.lidars = "/a,/b", .deskew = Deskew::kVelocity}).sequences.front(), drive);
 }
 
+TEST_F(Rig, TakesMountsThatTfRepeats) {
+  const RigDrive drive{.scans = 4, .has_tf_static = false};
+  write_bag(drive);
+  expect_right(*opened({.lidars = "/a,/b"}).sequences.front(), drive);
+}
+
 TEST_F(Rig, MovesScansByPosesThatAreFoundLater) {
   const RigDrive drive{.timed = true};
   write_bag(drive);
@@ -150,7 +156,7 @@ TEST_F(Rig, TakesTheNearestScanAndCountsThoseWithout) {
   write_bag(drive);
   const Dataset data = opened({.lidars = "/a,/b"});
   const Sequence& rig = *data.sequences.front();
-  EXPECT_THAT(rig.remarks(), Contains("/b: 1 of 6 scans have no scan of it within half a step"));
+  EXPECT_THAT(rig.remarks(), Contains("/b: 1 of 6 scans have no scan of it within 50 ms"));
   EXPECT_THAT(rig.remarks(),
               Contains("/b: 1 of its 6 scans are left out: no scan of /a is nearest"));
   EXPECT_EQ(rig.point_count(0), drive.scan(0, 0).labels.size());
@@ -161,12 +167,27 @@ TEST_F(Rig, TakesTheNearestScanAndCountsThoseWithout) {
   }
 }
 
+TEST_F(Rig, TakesNoScanTwice) {
+  const auto left_out_of = [&](double later_s) {
+    write_bag({.scans = 6, .later_s = later_s});
+    const Dataset data = opened({.lidars = "/a,/b"});
+    std::size_t alone = 0;
+    const RigDrive drive{.scans = 6, .later_s = later_s};
+    for (std::size_t k = 0; k < 6; ++k) {
+      alone += data.sequences.front()->point_count(k) == drive.scan(0, k).labels.size() ? 1U : 0U;
+    }
+    return alone;
+  };
+  EXPECT_EQ(left_out_of(0.05), 0U) << "exactly between two scans";
+  EXPECT_EQ(left_out_of(-0.05), 1U);
+}
+
 TEST_F(Rig, RefusesLidarsWithoutMountOrWithAnotherClock) {
   write_bag({.scans = 3}, 1);
   EXPECT_THAT(
       error_of({.lidars = "/a,/b"}),
-      HasSubstr("/tf_static does not lead from lidar_b to lidar_a (base, lidar_a), expected "
-                "the mounts of both LiDARs there, or one LiDAR in lidars"));
+      HasSubstr("no transform that never changes leads from lidar_b to lidar_a (base, lidar_a), "
+                "expected the mounts of both in /tf_static, or one LiDAR in lidars"));
   write_bag({.scans = 3, .later_s = 100});
   EXPECT_THAT(
       error_of({.poses = StaticPoses{}, .lidars = "/a,/b"}),
