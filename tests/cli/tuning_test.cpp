@@ -10,6 +10,7 @@
 #include "tests/cli/small_sequence.hpp"
 
 namespace mosbench {
+namespace fs = std::filesystem;
 namespace {
 
 using nlohmann::ordered_json;
