@@ -12,8 +12,8 @@
 #include <variant>
 #include <vector>
 
-#include "datasets/doctor/registration.hpp"
 #include "datasets/sequence/reading.hpp"
+#include "datasets/sequence/registration.hpp"
 #include "datasets/sequence/sequence.hpp"
 
 // What the scans of a sequence and its poses say of each other.

@@ -18,6 +18,7 @@
 #include "datasets/sequence/pose_mark.hpp"
 #include "datasets/sequence/scan_range.hpp"
 #include "datasets/sequence/simulated_origin.hpp"
+#include "datasets/sequence/still_sensor.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 
@@ -184,10 +185,22 @@ double moved_m(const Layout& layout, const SequenceFolder& folder, Reading readi
 
 std::unique_ptr<Sequence> opened(const Layout& layout, const SequenceFolder& folder,
                                  const Reading& reading) {
-  if (!reading.is_static()) return layout.open(folder, reading);
   Reading unposed = reading;
   unposed.poses = ByOdometry{};
-  return with_static_poses(layout.open(folder, unposed), moved_m(layout, folder, reading));
+  if (reading.is_static()) {
+    return with_static_poses(layout.open(folder, unposed),
+                             "the sensor is taken to stand still: every pose is the identity",
+                             moved_m(layout, folder, reading));
+  }
+  try {
+    return layout.open(folder, reading);
+  } catch (const MissingPoses& missing) {
+    std::unique_ptr<Sequence> sequence = layout.open(folder, unposed);
+    const StillSensor sensor = find_still_sensor(*sequence);
+    if (sensor.stands) return with_static_poses(std::move(sequence), sensor.said);
+    if (sensor.said.empty()) throw;
+    throw MissingPoses(fmt::format("{}; {}", missing.what(), sensor.said));
+  }
 }
 
 /// Refuses what was asked of sequences that cannot have it.

@@ -12,7 +12,16 @@
 
 namespace mosbench {
 
-enum class SensorKind : std::uint8_t { kOs1_64, kOs2_128, kVlp16, kHdl64e, kAvia, kAeva, kHdl32e };
+enum class SensorKind : std::uint8_t {
+  kOs1_64,
+  kOs2_128,
+  kVlp16,
+  kHdl64e,
+  kAvia,
+  kAeva,
+  kHdl32e,
+  kMid360
+};
 
 enum class MoverKind : std::uint8_t { kPedestrian, kCyclist, kCar, kTruck };
 

@@ -20,11 +20,10 @@ namespace {
 
 class StandingSequence : public PosedSequence {
  public:
-  StandingSequence(std::unique_ptr<Sequence> inner, double passed_over_m)
+  StandingSequence(std::unique_ptr<Sequence> inner, const std::string& remark, double passed_over_m)
       : PosedSequence(std::move(inner), {.source = std::string(kStaticPoses)}, Deskew::kNone) {
     constexpr double kStill_m = 0.05;
-    set_poses(std::vector<Pose>(size(), Pose::Identity()),
-              "the sensor is taken to stand still: every pose is the identity");
+    set_poses(std::vector<Pose>(size(), Pose::Identity()), remark);
     if (passed_over_m <= kStill_m) return;
     mutable_recording().doubts.push_back(
         fmt::format("the poses of the data set move by {:.2f} m and are not used ({})",
@@ -111,8 +110,9 @@ RefinedPoses known_refined_poses(const Sequence& sequence, const ScanCount& coun
 
 }  // namespace
 
-std::unique_ptr<Sequence> with_static_poses(std::unique_ptr<Sequence> inner, double passed_over_m) {
-  return std::make_unique<StandingSequence>(std::move(inner), passed_over_m);
+std::unique_ptr<Sequence> with_static_poses(std::unique_ptr<Sequence> inner,
+                                            const std::string& remark, double passed_over_m) {
+  return std::make_unique<StandingSequence>(std::move(inner), remark, passed_over_m);
 }
 
 std::unique_ptr<Sequence> with_refined_poses(std::unique_ptr<Sequence> inner,

@@ -23,8 +23,8 @@ struct SensorRow {
 };
 
 /// In the order of SensorKind.
-const std::array<SensorRow, 7>& sensor_rows() {
-  static const std::array<SensorRow, 7> rows = {{
+const std::array<SensorRow, 8>& sensor_rows() {
+  static const std::array<SensorRow, 8> rows = {{
       {"os1-64", {16.61 * kRadPerDeg, -16.61 * kRadPerDeg, 2 * kPi}, {.kind = SensorKind::kOs1_64}},
       {"os2-128",
        {11.25 * kRadPerDeg, -11.25 * kRadPerDeg, 2 * kPi},
@@ -69,6 +69,13 @@ const std::array<SensorRow, 7>& sensor_rows() {
         .rings = 32,
         .min_range_m = 1.0,
         .max_range_m = 100.0}},
+      {"mid-360",
+       {52.0 * kRadPerDeg, -7.0 * kRadPerDeg, 2 * kPi},
+       {.kind = SensorKind::kMid360,
+        .columns = 5000,
+        .rings = 4,
+        .min_range_m = 0.1,
+        .max_range_m = 70.0}},
   }};
   return rows;
 }
@@ -124,6 +131,27 @@ std::vector<Eigen::Vector3d> rosette(const SensorModel& sensor, std::size_t scan
   return rays;
 }
 
+// A mirror turns the beam all round while it nods, at rates that are incommensurable as well; four
+// lasers lie side by side.
+std::vector<Eigen::Vector3d> nodding_turns(const SensorModel& sensor, std::size_t scan_index) {
+  constexpr double kTurnsPerScan = 5.0937, kNodsPerScan = 61.3709, kLaserSpacingRad = 0.0045;
+  const FieldOfView view = row_of(sensor.kind).view;
+  const double middle_rad = 0.5 * (view.top_rad + view.bottom_rad);
+  std::vector<Eigen::Vector3d> rays;
+  rays.reserve(sensor.slots());
+  for (std::size_t column = 0; column < sensor.columns; ++column) {
+    const double scans = static_cast<double>(scan_index) +
+                         static_cast<double>(column) / static_cast<double>(sensor.columns);
+    const double nod = sin_cos(2 * kPi * kNodsPerScan * scans).sin;
+    const SinCos elevation = sin_cos(middle_rad + (view.top_rad - middle_rad) * nod);
+    for (std::size_t laser = 0; laser < sensor.rings; ++laser) {
+      const double offset_rad = static_cast<double>(laser) * kLaserSpacingRad;
+      rays.push_back(direction(sin_cos(offset_rad - 2 * kPi * kTurnsPerScan * scans), elevation));
+    }
+  }
+  return rays;
+}
+
 }  // namespace
 
 std::string_view to_string(SensorKind kind) { return row_of(kind).name; }
@@ -143,9 +171,13 @@ std::vector<std::string_view> sensor_names() {
 SensorModel sensor_model(SensorKind kind) { return row_of(kind).model; }
 
 std::vector<Eigen::Vector3d> beam_directions(const SensorModel& sensor, std::size_t scan_index) {
-  return repeats_every_scan(sensor) ? raster(sensor) : rosette(sensor, scan_index);
+  if (repeats_every_scan(sensor)) return raster(sensor);
+  return sensor.kind == SensorKind::kAvia ? rosette(sensor, scan_index)
+                                          : nodding_turns(sensor, scan_index);
 }
 
-bool repeats_every_scan(const SensorModel& sensor) { return sensor.kind != SensorKind::kAvia; }
+bool repeats_every_scan(const SensorModel& sensor) {
+  return sensor.kind != SensorKind::kAvia && sensor.kind != SensorKind::kMid360;
+}
 
 }  // namespace mosbench

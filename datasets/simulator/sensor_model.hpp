@@ -30,11 +30,11 @@ std::optional<SensorKind> sensor_kind_from_string(std::string_view name);
 std::vector<std::string_view> sensor_names();
 
 /// Returns the sensor as it is sold: OS1-64 2048 columns, OS2-128 1024, VLP-16 1800, HDL-64E 2000,
-/// Livox Avia 24,000 points, Aeva Aeries II 64 x 800, HDL-32E 1084.
+/// Livox Avia 24,000 points, Aeva Aeries II 64 x 800, HDL-32E 1084, Livox Mid-360 20,000 points.
 SensorModel sensor_model(SensorKind kind);
 
 /// Returns unit vectors of all rays of a scan in firing order, slot = column * rings + ring, in the
-/// sensor frame (x ahead). Only the Avia's rosette depends on the scan: it does not repeat.
+/// sensor frame (x ahead). Only the patterns of Livox depend on the scan: they do not repeat.
 std::vector<Eigen::Vector3d> beam_directions(const SensorModel& sensor, std::size_t scan_index);
 bool repeats_every_scan(const SensorModel& sensor);
 

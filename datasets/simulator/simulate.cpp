@@ -101,7 +101,8 @@ void check_sensor(const Layout& layout, const Scene& scene) {
         "own; leave these keys out",
         scene.name, layout.name, kCounts.at(sensors)));
   }
-  if (layout.simulation->keeps_lost && scene.sensor == to_string(SensorKind::kAvia)) {
+  const auto sensor = sensor_kind_from_string(scene.sensor.value_or(""));
+  if (layout.simulation->keeps_lost && sensor && !repeats_every_scan(sensor_model(*sensor))) {
     throw UsageError(
         fmt::format("scene '{}' asks for sensor '{}', but layout {} needs one with "
                     "rings; expected e.g. os1-64",

@@ -18,7 +18,7 @@ import subprocess
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SENSORS = ("os1-64", "os2-128", "hdl-64e", "hdl-32e", "vlp-16", "avia", "aeva")
+SENSORS = ("os1-64", "os2-128", "hdl-64e", "hdl-32e", "vlp-16", "avia", "aeva", "mid-360")
 NAME = re.compile(rf"\bscenes/([a-z]+)-({'|'.join(SENSORS)})-(\d+)(?:-(\d+)hz)?\.json\b")
 
 

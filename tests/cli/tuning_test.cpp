@@ -11,6 +11,7 @@
 #include "tests/cli/small_sequence.hpp"
 
 namespace mosbench {
+namespace fs = std::filesystem;
 namespace {
 
 namespace fs = std::filesystem;

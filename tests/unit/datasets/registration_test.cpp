@@ -1,4 +1,4 @@
-#include "datasets/doctor/registration.hpp"
+#include "datasets/sequence/registration.hpp"
 
 #include <gtest/gtest.h>
 

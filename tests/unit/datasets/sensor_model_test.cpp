@@ -34,6 +34,7 @@ TEST(SensorModel, HasAsManySlotsAsTheRealSensor) {
   EXPECT_EQ(sensor_model(SensorKind::kOs2_128).slots(), 131072U);
   EXPECT_EQ(sensor_model(SensorKind::kVlp16).slots(), 28800U);
   EXPECT_EQ(sensor_model(SensorKind::kAvia).slots(), 24000U);
+  EXPECT_EQ(sensor_model(SensorKind::kMid360).slots(), 20000U);
   for (const std::string_view name : sensor_names()) {
     const SensorModel sensor = sensor_model(*sensor_kind_from_string(name));
     EXPECT_EQ(beam_directions(sensor, 0).size(), sensor.slots()) << name;
@@ -62,28 +63,39 @@ TEST(SensorModel, SeesTheFieldOfViewOfItsDataSheet) {
   EXPECT_NEAR(kitti.lowest_deg, -24.8, 1e-9);
 }
 
-TEST(SensorModel, FillsTheAviasFieldOfViewOverManyScans) {
+View view_over_scans(SensorKind kind) {
   View all;
   for (std::size_t scan_index = 0; scan_index < 50; ++scan_index) {
-    const View view = view_of(beam_directions(sensor_model(SensorKind::kAvia), scan_index));
+    const View view = view_of(beam_directions(sensor_model(kind), scan_index));
     all.highest_deg = std::max(all.highest_deg, view.highest_deg);
     all.lowest_deg = std::min(all.lowest_deg, view.lowest_deg);
     all.leftmost_deg = std::max(all.leftmost_deg, view.leftmost_deg);
     all.rightmost_deg = std::min(all.rightmost_deg, view.rightmost_deg);
   }
-  EXPECT_NEAR(all.leftmost_deg - all.rightmost_deg, 70.4, 0.5);
-  EXPECT_NEAR(all.highest_deg - all.lowest_deg, 77.2, 0.5);
+  return all;
 }
 
-TEST(SensorModel, DrawsAnotherRosetteInEveryScan) {
-  const SensorModel avia = sensor_model(SensorKind::kAvia);
-  EXPECT_FALSE(repeats_every_scan(avia));
-  const auto first = beam_directions(avia, 0), second = beam_directions(avia, 1);
-  std::size_t equal = 0;
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    if ((first[i] - second[i]).norm() < 1e-3) ++equal;
+TEST(SensorModel, FillsTheFieldOfViewOfLivoxSensorsOverManyScans) {
+  const View all = view_over_scans(SensorKind::kAvia);
+  EXPECT_NEAR(all.leftmost_deg - all.rightmost_deg, 70.4, 0.5);
+  EXPECT_NEAR(all.highest_deg - all.lowest_deg, 77.2, 0.5);
+  const View round = view_over_scans(SensorKind::kMid360);
+  EXPECT_NEAR(round.leftmost_deg - round.rightmost_deg, 360.0, 0.5);
+  EXPECT_NEAR(round.highest_deg, 52.0, 0.1);
+  EXPECT_NEAR(round.lowest_deg, -7.0, 0.1);
+}
+
+TEST(SensorModel, OfLivoxDrawsAnotherPatternInEveryScan) {
+  for (const SensorKind kind : {SensorKind::kAvia, SensorKind::kMid360}) {
+    const SensorModel sensor = sensor_model(kind);
+    EXPECT_FALSE(repeats_every_scan(sensor));
+    const auto first = beam_directions(sensor, 0), second = beam_directions(sensor, 1);
+    std::size_t equal = 0;
+    for (std::size_t i = 0; i < first.size(); ++i) {
+      if ((first[i] - second[i]).norm() < 1e-3) ++equal;
+    }
+    EXPECT_LT(equal, first.size() / 100) << to_string(kind);
   }
-  EXPECT_LT(equal, first.size() / 100);
 }
 
 TEST(SensorModel, OrdersSlotsByColumnAndWithinItByRingFromTheTop) {

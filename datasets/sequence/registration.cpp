@@ -1,4 +1,4 @@
-#include "datasets/doctor/registration.hpp"
+#include "datasets/sequence/registration.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -16,7 +16,7 @@ namespace {
 
 using Columns = std::unordered_map<std::uint64_t, std::pair<double, double>>;
 
-constexpr double kCellM = 1.0;
+constexpr double kOverlapCellM = 1.0;
 
 constexpr double kColumnM = 1.0;
 constexpr std::size_t kFewestOfSurface = 5;
@@ -219,7 +219,8 @@ const ScanOverlap::Scan& ScanOverlap::at(std::size_t scan_index) {
   const std::vector<Eigen::Vector3d> near_m = near_points(sequence_.read(scan_index).points);
   Scan& scan = scans_[scan_index];
   scan.moved_m = picked(near_m, kMovedPoints);
-  for (const auto& [key, moments] : moments_of_cells(picked(near_m, kSurfacePoints), kCellM)) {
+  for (const auto& [key, moments] :
+       moments_of_cells(picked(near_m, kSurfacePoints), kOverlapCellM)) {
     if (moments.count < kFewestOfSurface) continue;
     const Eigen::Matrix3d covariance_m2 =
         moments.covariance_m2() + kThinnestM * kThinnestM * Eigen::Matrix3d::Identity();
@@ -239,7 +240,7 @@ double ScanOverlap::overlap(const ScanPair& pair, const Pose& motion) {
   double sum = 0.0;
   for (const Eigen::Vector3d& point_m : points_m) {
     const Eigen::Vector3d moved_m = motion * point_m;
-    const auto surface = surfaces.find(cube_key(moved_m, kCellM));
+    const auto surface = surfaces.find(cube_key(moved_m, kOverlapCellM));
     if (surface == surfaces.end()) continue;
     const Eigen::Vector3d offset_m = moved_m - surface->second.mean_m;
     sum += std::exp(-0.5 * offset_m.dot(surface->second.information * offset_m));
