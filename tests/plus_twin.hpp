@@ -104,7 +104,7 @@ class PlusTwin final : public Method {
         return other != nullptr && other->last_seen == k_ && !scan.occupied.contains(u);
       };
       const bool is_open = sees_through({v.x, v.y, v.z - 1}) || sees_through({v.x, v.y, v.z + 1});
-      if (young(*cell) && is_open) scan.open.insert(v);
+      if (is_open) scan.open.insert(v);
       if (young(*cell) && may_be_seed(v, true)) scan.seeds.insert(v);
       if (young(*cell) && is_within(*cell, c_.fresh_age_s)) scan.fresh.insert(v);
       if (cell->occupied_ticks >= 5) scan.aged.insert(v);
@@ -334,7 +334,7 @@ class PlusTwin final : public Method {
         arrived += seen.arrived, settled += seen.settled_beside;
       }
       const bool stays =
-          scan.tick - since >= 2 && settled > 0.05 * voxels && arrived < 0.9 * voxels &&
+          scan.tick - since >= 2 && arrived < (settled > 0.05 * voxels ? 0.9 : 0.3) * voxels &&
           left_in_box(all, scan.tick) < 0.1 * static_cast<double>(component.voxels.size());
       const bool is_attached =
           stays || (settled > c_.max_settled_share * voxels && arrived < 0.8 * voxels);
@@ -350,7 +350,7 @@ class PlusTwin final : public Method {
     double arrived = 0, open = 0;
     for (const Voxel& v : voxels) {
       arrived += scan.arrived.contains(v) ? 1 : 0;
-      open += scan.open.contains(v) ? 1 : 0;
+      open += scan.arrived.contains(v) && scan.open.contains(v) ? 1 : 0;
     }
     const auto are_level = [&](const SetOf& others) {
       return std::ranges::all_of(others, [&](const Voxel& v) { return v.z == voxels.begin()->z; });

@@ -128,6 +128,11 @@ std::vector<Check> table() {
           "scan {after_gap} comes {longest_step_s:.2f} s after the one before it, others "
           "{step_s:.2f} s; expected no gap in time"),
 
+      row(kClock, "another clock", {{"clock_off_s", '>', 0.0}},
+          "scans fit poses that are stamped {clock_off_s:g} s off; expected one clock: run with "
+          "{clock_cure}",
+          false, kWarning, true),
+
       row(kStill, "equal poses", {{"equal_poses", '>', 1}},
           "all {equal_poses} poses are equal; expected those of a sensor that moves, unless it "
           "stood still",

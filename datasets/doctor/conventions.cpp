@@ -192,6 +192,7 @@ PoseConvention fitted(const PoseConvention& given, const MeasuredMotions& measur
 Reading Remedy::applied_to(Reading reading) const {
   if (pose_frame) reading.pose_frame = *pose_frame;
   if (pose_direction) reading.pose_direction = pose_direction;
+  reading.pose_offset_s = pose_offset_s.value_or(reading.pose_offset_s);
   return reading;
 }
 

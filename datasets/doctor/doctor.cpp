@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -100,7 +101,8 @@ class Examination {
  private:
   /// Notes what is no symptom; returns whether anything else is found.
   bool judge(Subject subject, SequenceCheckup& part) {
-    const Remedy remedy = part.poses ? remedy_of(*part.poses) : Remedy();
+    Remedy remedy = part.poses ? remedy_of(*part.poses) : Remedy();
+    remedy.pose_offset_s = part.reading.poses.fitting_offset_s;
     bool found = false;
     for (Symptom& symptom : judged(checks(), subject, part.facts, part.name, remedy)) {
       if (symptom.severity == Severity::kNote) {
@@ -160,6 +162,7 @@ class Examination {
       part.has_poses = !options.reading.is_by_odometry();
       check_points(sequence, folder, expected, part);
       if (!part.has_poses) continue;
+      check_clock(part);
       check_poses(sequence, folder, part);
       const bool is_whole = !sequence.simulated() && !options.reading.scans;
       if (is_whole) check_published(sequence, folder, expected, part);
@@ -175,6 +178,14 @@ class Examination {
     });
     examine_stamps(sequence, part.facts);
     judge(Subject::kStamps, part);
+  }
+
+  void check_clock(SequenceCheckup& part) {
+    const auto offset_s = part.reading.poses.fitting_offset_s;
+    if (!offset_s) return;
+    part.facts["clock_off_s"] = std::abs(*offset_s - part.reading.poses.offset_s.value_or(0.0));
+    part.facts["clock_cure"] = option("pose_offset_s", fmt::format("{}", *offset_s));
+    judge(Subject::kClock, part);
   }
 
   /// Checks the poses, and the labels where nothing speaks against the poses.

@@ -41,8 +41,9 @@ class Facts {
 struct Remedy {
   std::optional<PoseFrame> pose_frame = std::nullopt;
   std::optional<PoseDirection> pose_direction = std::nullopt;
+  std::optional<double> pose_offset_s = std::nullopt;
 
-  explicit operator bool() const { return pose_frame || pose_direction; }
+  explicit operator bool() const { return pose_frame || pose_direction || pose_offset_s; }
   bool operator==(const Remedy&) const = default;
   Reading applied_to(Reading reading) const;
 };
@@ -63,6 +64,7 @@ enum class Subject : std::uint8_t {
   kPoints,
   kLabelIds,
   kStamps,
+  kClock,  ///< of poses, by what opening a sequence shows
   kStill,  ///< poses before any scan is read, which may tell whether the sensor stands
   kPoses,
   kFit,   ///< of poses in which nothing else was found

@@ -246,6 +246,14 @@ DataMark mark_of(const Sequence& sequence, const SequenceFolder& folder, const L
   return mark;
 }
 
+/// Refuses an offset of stamps that no pose has.
+void check_offset(const Sequence& sequence, const Reading& asked) {
+  if (asked.pose_offset_s == 0.0 || sequence.reading().poses.offset_s) return;
+  throw UsageError(fmt::format(
+      "{}: the poses of {} are not looked up by stamps, expected those of a TUM file or a bag",
+      option("pose_offset_s"), sequence.name()));
+}
+
 /// Throws DataError for a sequence whose poses no sensor can have had.
 void check_positions(const Sequence& sequence, const SequenceFolder& folder) {
   const std::vector<ScanEntry>& scans = sequence.recording().scans;
@@ -332,6 +340,7 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
     const Reading reading = reading_of(folder, options.reading);
     check_point_times(reading, layout, folder);
     std::unique_ptr<Sequence> sequence = opened(layout, folder, reading);
+    check_offset(*sequence, reading);
     check_positions(*sequence, folder);
     sequence->set_mark(mark_of(*sequence, folder, layout, path));
     if (const auto* poses = reading.pose_file()) {

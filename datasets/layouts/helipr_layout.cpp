@@ -79,18 +79,21 @@ class HeliprSequence : public Sequence {
     if (size() == 0) throw DataError(folder, "holds no scan", "<stamp_ns>.bin");
   }
 
-  void take_ground_truth(const fs::path& file, double max_gap_s) {
+  void take_ground_truth(const fs::path& file, const Reading& asked) {
     Recording& recording = mutable_recording();
     std::vector<std::pair<std::int64_t, Pose>> stamped;
     for (const HeliprPose& pose : parse_helipr_poses(read_file(file), file)) {
-      stamped.emplace_back(pose.stamp_ns, pose.map_from_sensor);
+      stamped.emplace_back(asked.moved_ns(pose.stamp_ns), pose.map_from_sensor);
     }
     const PoseTrack track(std::move(stamped));
     SensorPoses own = own_poses("LiDAR_GT/" + file.filename().string(), file);
     own.files = {file};
+    if (asked.pose_offset_s != 0.0) own.done.offset_s = asked.pose_offset_s;
     for (const ScanEntry& scan : recording.scans) {
       auto pose = track.at(*scan.stamp_ns);
-      if (static_cast<double>(track.gap_ns(*scan.stamp_ns)) > max_gap_s * 1e9) pose.reset();
+      if (static_cast<double>(track.gap_ns(*scan.stamp_ns)) > asked.max_pose_gap_s * 1e9) {
+        pose.reset();
+      }
       own.map_from_sensor.push_back(pose);
     }
     const std::size_t scans = size();
@@ -111,7 +114,7 @@ class HeliprSequence : public Sequence {
       return;
     }
     const auto place = parent_folder(folder).parent_path() / "LiDAR_GT";
-    take_ground_truth(place / fmt::format("{}_gt.txt", to_string(sensor_)), asked.max_pose_gap_s);
+    take_ground_truth(place / fmt::format("{}_gt.txt", to_string(sensor_)), asked);
   }
 
   HeliprSensor sensor_;

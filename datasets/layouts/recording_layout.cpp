@@ -112,11 +112,13 @@ std::vector<SequenceFolder> list_recording(const std::filesystem::path& path) {
   for (const BagParts& bag : bags) {
     const std::filesystem::path& first = bag.files.front();
     const std::filesystem::path own_name = is_bag_folder(first) ? first.filename() : first.stem();
-    const bool is_joined = bag.files.size() > 1;
-    std::string name = is_joined && !bag.name.empty() ? bag.name : own_name.string();
+    const bool is_part = bag.files.size() > 1 || !bag.doubt.empty();
+    // Two stretches of one drive, with a part missing between, are called as their first parts.
+    const bool is_whole = std::ranges::count(bags, bag.name, &BagParts::name) == 1;
+    std::string name = is_whole && !bag.name.empty() ? bag.name : own_name.string();
     if (is_one && !is_bag_folder(first)) name = folder_name(path);
     // Only a recording in parts has a second name.
-    sequences.push_back({std::move(name), first, is_joined ? own_name.string() : ""});
+    sequences.push_back({std::move(name), first, is_part ? own_name.string() : ""});
   }
   expect_own_names(path, sequences);
   if (sequences.empty() && !scans_in(path).empty()) return {{folder_name(path), path, ""}};
@@ -162,27 +164,33 @@ std::unique_ptr<Sequence> open_folder_lidars(const SequenceFolder& sequence, con
   return std::make_unique<RigSequence>(std::move(lidars), std::vector{file});
 }
 
-std::unique_ptr<const BagReader> open_bag_of(const SequenceFolder& sequence) {
+/// Opens the bag of a sequence, or its parts, of which something may be doubtful.
+std::unique_ptr<const BagReader> open_bag_of(const SequenceFolder& sequence, std::string& doubt) {
   const auto& path = sequence.folder;
   if (sequence.alias.empty()) return open_bag(path);
   const auto bags = group_parts(bags_of(path.parent_path()));
   const auto parts =
       std::ranges::find_if(bags, [&](const BagParts& bag) { return bag.files.front() == path; });
   if (parts == bags.end()) throw DataError(path, "changed while it was read", "a whole recording");
+  doubt = parts->doubt;
   return open_bag(*parts);
 }
 
 std::unique_ptr<Sequence> open_recording(const SequenceFolder& sequence, const Reading& asked) {
   const auto& path = sequence.folder;
-  const bool is_of_bag = !sequence.alias.empty() || is_bag(path);
-  if (asked.lidars && is_of_bag) {
-    return open_bag_lidars(
-        sequence.name, [&] { return open_bag_of(sequence); }, asked);
+  if (!sequence.alias.empty() || is_bag(path)) {
+    std::string doubt;
+    const auto open = [&] { return open_bag_of(sequence, doubt); };
+    std::unique_ptr<Sequence> drive;
+    if (asked.lidars) {
+      drive = open_bag_lidars(sequence.name, open, asked);
+    } else {
+      drive = std::make_unique<BagSequence>(sequence.name, open(), asked);
+    }
+    if (!doubt.empty()) drive->add_doubt(doubt);
+    return drive;
   }
   if (asked.lidars) return open_folder_lidars(sequence, asked);
-  if (is_of_bag) {
-    return std::make_unique<BagSequence>(sequence.name, open_bag_of(sequence), asked);
-  }
   if (is_scan(path)) return std::make_unique<SingleScan>(sequence.name, path, asked);
   return std::make_unique<KittiSequence>(sequence.name, path, asked,
                                          SequenceLayout{.folder = {.scan_folder = "."}});

@@ -35,8 +35,16 @@ double ahead_s(std::span<const MessageTimes> messages, bool of_last = false) {
   return quantile(std::move(ahead), 0.5, QuantileRule::kUpper);
 }
 
+/// Whether the stamps run as the recorder's clock does: stamps of 0 do not.
+bool run_alike(std::span<const MessageTimes> scans) {
+  constexpr double kShare = 0.1;
+  const MessageTimes &first = scans.front(), &last = scans.back();
+  const double recorded_s = seconds(last.recorded_ns - first.recorded_ns);
+  return std::abs(seconds(last.stamp_ns - first.stamp_ns) - recorded_s) <= kShare * recorded_s;
+}
+
 /// Some messages of all topics of poses that change.
-std::vector<MessageTimes> times_of_poses(const BagReader& bag) {
+std::vector<MessageTimes> times_of_poses(const BagReader& bag, const Reading& asked) {
   std::set<std::string> topics;
   for (const std::string_view type : {kTfMessage, kOldTfMessage, kTransformStamped, kOdometry,
                                       kPoseStamped, kPoseWithCovarianceStamped}) {
@@ -52,7 +60,8 @@ std::vector<MessageTimes> times_of_poses(const BagReader& bag) {
       const BagMessage& message = messages[i * messages.size() / taken];
       const auto transforms =
           parse_transforms(bag.read(message), bag.format_of(message), bag.path());
-      if (!transforms.empty()) poses.push_back({transforms[0].stamp_ns, message.recorded_ns});
+      if (transforms.empty()) continue;
+      poses.push_back({asked.moved_ns(transforms[0].stamp_ns), message.recorded_ns});
     }
   }
   return poses;
@@ -90,17 +99,24 @@ std::optional<std::string> doubt_about_recording(std::span<const MessageTimes> s
 
 }  // namespace
 
-std::optional<std::string> doubt_about_clocks(const BagReader& bag,
-                                              std::span<const MessageTimes> scans) {
-  const std::vector<MessageTimes> poses = times_of_poses(bag);
+std::optional<ClockDoubt> doubt_about_clocks(const BagReader& bag,
+                                             std::span<const MessageTimes> scans,
+                                             const Reading& asked) {
+  const std::vector<MessageTimes> poses = times_of_poses(bag, asked);
   if (scans.empty() || poses.empty()) return std::nullopt;
   const double apart_s = ahead_s(scans) - ahead_s(poses);
-  if (std::abs(apart_s) <= kMostApart_s) return doubt_about_recording(scans, poses);
-  return fmt::format(
+  if (std::abs(apart_s) <= kMostApart_s) {
+    const auto what = doubt_about_recording(scans, poses);
+    return what ? std::optional(ClockDoubt{*what, {}}) : std::nullopt;
+  }
+  const std::string what = fmt::format(
       "the clock of the scans is {:+.3f} s from that of the poses: scans are stamped {} and were "
       "recorded {}, poses are stamped {}; the times of recording would fit",
       apart_s, range_of(scans, &MessageTimes::stamp_ns),
       range_of(scans, &MessageTimes::recorded_ns), range_of(poses, &MessageTimes::stamp_ns));
+  ClockDoubt doubt{what, {}};
+  if (run_alike(scans)) doubt.offset_s = mending_offset_s(asked.pose_offset_s, -apart_s);
+  return doubt;
 }
 
 }  // namespace mosbench

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <string>
 
 #include "datasets/rosbag/bag_reader.hpp"
+#include "datasets/sequence/pose_clock.hpp"
 
 namespace mosbench {
 
@@ -15,11 +15,12 @@ struct MessageTimes {
   std::int64_t last_ns = 0;  ///< of the points of a scan, after its stamp
 };
 
-/// Returns a sentence where scans and poses are stamped by clocks that differ, measured against the
+/// Returns a doubt where scans and poses are stamped by clocks that differ, measured against the
 /// recorder's: by more than 1.5 s (since boot instead of since 1970, or without leap seconds), or
 /// because scans were recorded before their points were measured, or far later than poses are. Some
 /// messages of each topic of poses are read. Throws DataError for damaged ones.
-std::optional<std::string> doubt_about_clocks(const BagReader& bag,
-                                              std::span<const MessageTimes> scans);
+std::optional<ClockDoubt> doubt_about_clocks(const BagReader& bag,
+                                             std::span<const MessageTimes> scans,
+                                             const Reading& asked);
 
 }  // namespace mosbench

@@ -51,6 +51,30 @@ bool follows(const Extent& before, const Extent& after) {
          before->first < after->first;
 }
 
+/// Returns a sentence where the time between two parts is about that of the parts whose numbers are
+/// not there; drives that somebody numbered are farther apart.
+std::string missing_between(const PartName& before, const Extent& first, const PartName& after,
+                            const Extent& second) {
+  const std::uint64_t missing = after.number - before.number - 1;
+  if (missing == 0 || !first || !second) return "";
+  const std::int64_t between_ns = second->first - first->second;
+  const auto longest_ns =
+      static_cast<double>(std::max(first->second - first->first, second->second - second->first));
+  const double most_ns = 1.5 * longest_ns * static_cast<double>(missing) + 2e9;
+  if (between_ns < 0 || static_cast<double>(between_ns) > most_ns) return "";
+  return fmt::format("{} of {}{} {} not there: {:.1f} s are missing between parts {} and {}",
+                     missing == 1
+                         ? fmt::format("part {}", before.number + 1)
+                         : fmt::format("parts {} to {}", before.number + 1, after.number - 1),
+                     before.drive, before.ending, missing == 1 ? "is" : "are",
+                     1e-9 * static_cast<double>(between_ns), before.number, after.number);
+}
+
+void add_doubt(BagParts& parts, const std::string& doubt) {
+  if (doubt.empty()) return;
+  parts.doubt += (parts.doubt.empty() ? "" : "; ") + doubt;
+}
+
 }  // namespace
 
 std::vector<BagParts> group_parts(const std::vector<fs::path>& bags) {
@@ -72,12 +96,17 @@ std::vector<BagParts> group_parts(const std::vector<fs::path>& bags) {
   for (const auto& [name, file] : parts) {
     const bool is_next =
         last != nullptr && std::tie(last->drive, last->ending) == std::tie(name.drive, name.ending);
+    const std::string missing =
+        is_next ? missing_between(*last, extent(found.back().files.back()), name, extent(file))
+                : "";
     if (is_next && follows(extent(found.back().files.back()), extent(file))) {
       found.back().name = name.drive;
       found.back().files.push_back(file);
     } else {
+      add_doubt(found.back(), missing);
       found.push_back({"", {file}});
     }
+    add_doubt(found.back(), missing);
     last = &name;
   }
   // Files before folders, as they were given.

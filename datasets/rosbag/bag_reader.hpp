@@ -106,6 +106,7 @@ struct BagParts {
   std::string
       name;  ///< "drive" of drive_2024-01-01-12-00-00_0.bag and drive_2024-01-01-12-00-30_1.bag
   std::vector<std::filesystem::path> files;
+  std::string doubt = {};  ///< about parts that are not there
 };
 
 /// Returns the bags of one folder, those together that `rosbag record --split` or a ROS 2 recorder

@@ -75,8 +75,7 @@ BagSequence::BagSequence(std::string name, std::unique_ptr<const BagReader> bag,
   const PoseAt pose_at = transforms_
                              ? PoseAt([this](auto ns) { return transforms_->at(ns); })
                              : stamped_poses(bag_->path().parent_path(), "poses.txt", asked);
-  const auto clocks = doubt_about_clock(*this, pose_at);
-  if (clocks) recording.doubts.push_back(*clocks);
+  if (const auto clocks = doubt_about_clock(*this, pose_at)) add_clock_doubt(recording, *clocks);
 }
 
 PoseAt BagSequence::pose_at(std::size_t scan_index) const {
@@ -181,6 +180,7 @@ void BagSequence::open_transforms(const Reading& asked) {
   }
   BagTransforms transforms = bag_transforms(*bag_, asked, frame);
   recording.reading.poses.source = transforms.source;
+  if (asked.pose_offset_s != 0.0) recording.reading.poses.offset_s = asked.pose_offset_s;
   state_pose_origin(bag_->files().front(), recording.reading.poses, recording.doubts);
   recording.remarks.push_back("poses from the bag: " + transforms.source);
   std::ranges::move(transforms.remarks, std::back_inserter(recording.remarks));
@@ -191,9 +191,9 @@ void BagSequence::open_transforms(const Reading& asked) {
   for (const Scan& scan : scans_) {
     times.push_back({scan.stamp_ns, scan.message.recorded_ns, last_ns});
   }
-  const std::string clocks = doubt_about_clocks(*bag_, times).value_or("");
-  if (!clocks.empty()) recording.doubts.push_back(clocks);
-  leave_out_uncovered(clocks);
+  const auto clocks = doubt_about_clocks(*bag_, times, asked);
+  if (clocks) add_clock_doubt(recording, *clocks);
+  leave_out_uncovered(clocks ? to_string(*clocks) : "");
   enter_scans();
   for (ScanEntry& scan : recording.scans) scan.map_from_sensor = *transforms_->at(*scan.stamp_ns);
 }

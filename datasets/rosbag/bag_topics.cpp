@@ -119,6 +119,7 @@ class PoseSearch {
   void take(std::vector<StampedTransform> parsed, std::vector<StampedTransform>& transforms) {
     for (StampedTransform& transform : parsed) {
       if (transform.is_sound) {
+        transform.stamp_ns = asked_.moved_ns(transform.stamp_ns);
         transforms.push_back(std::move(transform));
       } else {
         ++unsound_[transform.child];

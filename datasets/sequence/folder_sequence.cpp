@@ -30,7 +30,7 @@ FolderSequence::FolderSequence(std::string name, const std::filesystem::path& fo
   recording.files.insert(recording.files.end(), times.begin(), times.end());
   judge_times(asked);
   const PoseAt pose_at = stamped_poses(folder, std::string(layout.poses_file), posed);
-  if (const auto clocks = doubt_about_clock(*this, pose_at)) recording.doubts.push_back(*clocks);
+  if (const auto clocks = doubt_about_clock(*this, pose_at)) add_clock_doubt(recording, *clocks);
 }
 
 void FolderSequence::list_scans(const std::filesystem::path& folder, const FolderLayout& layout,

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "datasets/formats/point_range.hpp"
+#include "datasets/text/errors.hpp"
 
 namespace mosbench {
 namespace {
@@ -307,16 +308,33 @@ std::optional<std::int64_t> constant_offset_ns(const std::vector<std::int64_t>& 
   return middle_ns;
 }
 
-std::optional<std::string> doubt_about_clock(const Sequence& sequence, const PoseAt& pose_at) {
+std::string to_string(const ClockDoubt& doubt) {
+  if (!doubt.offset_s) return doubt.what;
+  return fmt::format("{}; {} reads poses by the clock of the scans", doubt.what,
+                     option("pose_offset_s", fmt::format("{}", *doubt.offset_s)));
+}
+
+void add_clock_doubt(Recording& recording, const ClockDoubt& doubt) {
+  recording.doubts.push_back(to_string(doubt));
+  if (doubt.offset_s) recording.reading.poses.fitting_offset_s = doubt.offset_s;
+}
+
+double mending_offset_s(double asked_s, double late_s) {
+  return std::round((asked_s - late_s) * 1e3) / 1e3;
+}
+
+std::optional<ClockDoubt> doubt_about_clock(const Sequence& sequence, const PoseAt& pose_at) {
   constexpr double kLeast_s = 0.015;
   if (!pose_at) return std::nullopt;
   const auto fit = ClockFitting(sequence, pose_at).run();
   if (!fit || std::abs(fit->off_s) < kLeast_s) return std::nullopt;
-  return fmt::format(
+  const std::string what = fmt::format(
       "the poses of {:.0f} ms {} the stamps of the scans fit these best, points are {:.1f} times "
       "likelier there: scans and poses are stamped by clocks that differ, or the points were "
       "measured that much later and not undistorted",
       1e3 * std::abs(fit->off_s), fit->off_s > 0.0 ? "after" : "before", std::exp(fit->gain));
+  const double asked_s = sequence.reading().poses.offset_s.value_or(0.0);
+  return ClockDoubt{what, mending_offset_s(asked_s, fit->off_s)};
 }
 
 }  // namespace mosbench

@@ -65,7 +65,7 @@ class SensorPoseReader {
       : folder_(folder), asked_(asked), file_(std::move(file)) {}
 
   SensorPoses run(const std::vector<ScanEntry>& scans) {
-    const PoseList list = read_pose_list(file_, asked_.pose_format);
+    const PoseList list = read_list();
     result_.files.push_back(file_);
     const bool is_users = asked_.pose_file() != nullptr;
     if (is_users) result_.remarks.push_back("poses from " + file_.string());
@@ -78,7 +78,7 @@ class SensorPoseReader {
   }
 
   PoseAt at_any_time() {
-    const PoseList list = read_pose_list(file_, asked_.pose_format);
+    const PoseList list = read_list();
     if (list.stamps_ns.empty()) return {};
     pose_at_ = [track = track_of(list)](std::int64_t time_ns) { return track.at(time_ns); };
     turn_into_lidars(list.format);
@@ -86,6 +86,12 @@ class SensorPoseReader {
   }
 
  private:
+  PoseList read_list() const {
+    PoseList list = read_pose_list(file_, asked_.pose_format);
+    for (std::int64_t& stamp_ns : list.stamps_ns) stamp_ns = asked_.moved_ns(stamp_ns);
+    return list;
+  }
+
   void turn_into_lidars(PoseFormat format) {
     invert_or_not(asked_.pose_direction.value_or(format == PoseFormat::kRollout
                                                      ? PoseDirection::kSensorFromMap
@@ -125,6 +131,7 @@ class SensorPoseReader {
 
   /// Takes the poses at the stamps of the scans. Only scans that are asked for can lack one.
   void interpolate(const PoseList& list, const std::vector<std::int64_t>& all_ns) {
+    if (asked_.pose_offset_s != 0.0) result_.done.offset_s = asked_.pose_offset_s;
     const PoseTrack track = track_of(list);
     const ScanRange range = asked_.scans.value_or(ScanRange{});
     std::vector<std::int64_t> stamps_ns;
@@ -175,14 +182,16 @@ class SensorPoseReader {
   }
 
   std::string compare_clocks(const std::vector<std::int64_t>& poses_ns,
-                             const std::vector<std::int64_t>& scans_ns) const {
+                             const std::vector<std::int64_t>& scans_ns) {
     const auto offset_ns = constant_offset_ns(poses_ns, scans_ns);
     if (!offset_ns) return "";
-    return fmt::format(
+    const double late_s = seconds_of(*offset_ns);
+    result_.done.fitting_offset_s = mending_offset_s(asked_.pose_offset_s, late_s);
+    const std::string what = fmt::format(
         "all stamps of {} are {:.1f} ms {} those of the scans: if these are times of "
         "recording or of another clock, every pose is of another moment",
-        file_.filename().string(), std::abs(seconds_of(*offset_ns)) * 1e3,
-        *offset_ns > 0 ? "after" : "before");
+        file_.filename().string(), std::abs(late_s) * 1e3, late_s > 0.0 ? "after" : "before");
+    return to_string(ClockDoubt{what, result_.done.fitting_offset_s});
   }
 
   [[noreturn]] void refuse_few(const std::vector<std::int64_t>& poses_ns,

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -58,6 +59,14 @@ std::vector<std::string> lidar_names(const Reading& asked) {
   return names;
 }
 
+std::int64_t Reading::moved_ns(std::int64_t pose_ns) const {
+  std::int64_t moved = 0;
+  const bool is_beyond = __builtin_add_overflow(pose_ns, std::llround(pose_offset_s * 1e9), &moved);
+  if (!is_beyond) return moved;
+  return pose_ns < 0 ? std::numeric_limits<std::int64_t>::min()
+                     : std::numeric_limits<std::int64_t>::max();
+}
+
 std::string to_string(const Perturbation& perturbation) {
   std::vector<std::string> parts;
   for (const PerturbStep& step : perturbation.steps) {
@@ -95,6 +104,7 @@ ReadingMembers members_of(const PosesDone& poses) {
   members.add("poses", poses.source);
   if (poses.format) members.add("pose_format", to_string(*poses.format));
   members.add("pose_pairing", poses.pairing);
+  if (poses.offset_s) members.add("pose_offset_s", fmt::format("{}", *poses.offset_s));
   members.add("pose_direction", direction_text(poses));
   members.add("pose_frame", frame_text(poses));
   members.add("pose_origin", poses.origin);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -104,6 +105,7 @@ struct Reading {
   std::optional<PoseDirection> pose_direction = std::nullopt;
   /// Scans between stamped poses farther apart than this are left out.
   double max_pose_gap_s = 0.5;
+  double pose_offset_s = 0.0;  ///< added to the stamps of poses, to read them by the scans' clock
   std::optional<std::string> topic = std::nullopt;      ///< of a bag's PointCloud2
   std::optional<std::string> lidars = std::nullopt;     ///< see `lidar_names`
   std::optional<std::string> map_frame = std::nullopt;  ///< of a bag's tf tree
@@ -132,6 +134,8 @@ struct Reading {
   bool takes_column() const { return point_times && *point_times != PointTimes::kAzimuth; }
   /// Whether points with times are to be moved.
   bool undistorts() const { return deskew != Deskew::kNone; }
+  /// Returns the stamp of a pose by the clock of the scans.
+  std::int64_t moved_ns(std::int64_t pose_ns) const;
   bool has_own_poses() const { return std::holds_alternative<OwnPoses>(poses); }
   bool is_by_odometry() const { return std::holds_alternative<ByOdometry>(poses); }
   bool is_static() const { return std::holds_alternative<StaticPoses>(poses); }
@@ -146,6 +150,9 @@ struct Reading {
 struct FieldText {
   std::string_view type;
 };
+/// From the time since boot to that since 1970.
+inline constexpr double kLongestOffset_s = 4e9;
+
 /// The legal values of a quantity, and what to call one.
 struct FieldQuantity {
   std::string_view type;      ///< "SECONDS"
@@ -153,6 +160,7 @@ struct FieldQuantity {
   std::string_view expected;  ///< "seconds"
   double lowest = 0.0;
   bool lowest_is_legal = true;
+  double highest = std::numeric_limits<double>::infinity();
 };
 
 struct FieldCount {
@@ -186,6 +194,9 @@ void visit_fields(Asked& reading, Visit&& visit) {
         "sensor-from-map poses are inverted (default: sensor-from-map for dynablox only)");
   visit("max_pose_gap_s", reading.max_pose_gap_s, FieldQuantity{"SECONDS", "time", "seconds"},
         "Scans between stamped poses farther apart are left out");
+  visit("pose_offset_s", reading.pose_offset_s,
+        FieldQuantity{"SECONDS", "time", "seconds", -kLongestOffset_s, true, kLongestOffset_s},
+        "Added to the stamps of poses whose clock is not that of the scans");
   visit("topic", reading.topic, FieldText{"TOPIC"}, "PointCloud2 topic of a bag");
   visit("lidars", reading.lidars, FieldText{"NAME,..."},
         "Topics of a bag, or folders of scans beside mounts.txt: one LiDAR, or up to six that are "
@@ -229,8 +240,10 @@ struct PosesDone {
   std::optional<PoseFrame> frame = std::nullopt;  ///< the camera's were turned into the lidar's
   bool frame_by_mark = false;                     ///< whether a mark beside the file says so
   bool refined = false;                           ///< whether registration corrected them
-  std::string origin = {};                        ///< of poses that were converted
-  std::string odometry = {}, map = {};            ///< its settings, and what its map leaves out
+  std::optional<double> offset_s = std::nullopt;  ///< added to their stamps
+  std::optional<double> fitting_offset_s = std::nullopt;  ///< that would fit better
+  std::string origin = {};                                ///< of poses that were converted
+  std::string odometry = {}, map = {};  ///< its settings, and what its map leaves out
 };
 
 /// What the times that the points of a bag have were used for.

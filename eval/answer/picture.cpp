@@ -53,16 +53,15 @@ Palette palette(bool dark) {
     return colour_from(entry.at(theme));
   };
   Palette palette{
-      {}, {}, colour(json.at("background")), colour(json.at("text")), colour(json.at("guide"))};
+      {}, {}, {}, colour(json.at("background")), colour(json.at("text")), colour(json.at("guide"))};
   const auto swatch = [&](const nlohmann::ordered_json& entry) {
     const std::string name = entry.at("name");
     return Swatch{colour(entry), name, entry.value("without_truth", name)};
   };
-  for (const nlohmann::ordered_json& entry : json.at("outcomes")) {
-    palette.outcomes.push_back(swatch(entry));
-  }
-  for (const nlohmann::ordered_json& entry : json.at("reasons")) {
-    palette.reasons.push_back(swatch(entry));
+  for (const auto& [key, swatches] : {std::pair{"outcomes", &palette.outcomes},
+                                      {"reasons", &palette.reasons},
+                                      {"scenes", &palette.scenes}}) {
+    for (const nlohmann::ordered_json& entry : json.at(key)) swatches->push_back(swatch(entry));
   }
   return palette;
 }

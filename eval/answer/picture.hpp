@@ -28,6 +28,7 @@ struct Swatch {
 struct Palette {
   std::vector<Swatch> outcomes;  ///< by PointOutcome
   std::vector<Swatch> reasons;   ///< by Reason
+  std::vector<Swatch> scenes;    ///< by ErrorScene
   Colour background, text, guide;
 };
 

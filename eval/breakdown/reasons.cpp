@@ -1,106 +1,52 @@
 #include "eval/breakdown/reasons.hpp"
 
-#include <cmath>
-#include <limits>
-#include <unordered_map>
+#include <mutex>
+#include <numeric>
 #include <vector>
 
-#include "datasets/text/errors.hpp"
-#include "eval/breakdown/object_tracks.hpp"
+#include "core/base/thread_pool.hpp"
 #include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace {
 
-constexpr std::array<const char*, kReasonCount> kNames = {"missed", "arrived", "departed",
-                                                          "grown",  "feet",    "predicted"};
-constexpr double kInView_s = 1.0;
-/// Places that are farther than this many cells from the map's origin share their keys with others.
-constexpr std::int64_t kKeyCells = std::int64_t{1} << 20;
+constexpr std::array<const char*, ReasonTable{}.size()> kNames = {
+    "missed", "arrived", "departed", "grown", "feet", "predicted", "called moving"};
 
-std::uint64_t key_of(const Eigen::Vector3d& map_m, int dx, int dy, int dz) {
-  const auto part = [](double position_m, int step) {
-    const auto cell = static_cast<std::int64_t>(std::floor(position_m / kPlaceCell_m)) + step;
-    return static_cast<std::uint64_t>((cell + kKeyCells) & (2 * kKeyCells - 1));
-  };
-  return part(map_m.x(), dx) << 42 | part(map_m.y(), dy) << 21 | part(map_m.z(), dz);
+std::size_t row_of(const JudgedScan& scan, std::size_t point) {
+  if (!scan.reasons.empty()) return static_cast<std::size_t>(scan.reasons[point]);
+  return scan.outcomes[point] == PointOutcome::kFalseNegative ? 0 : kReasonCount;
 }
 
-/// Calls visit(key) for a place's cell and its 26 neighbours.
-template <typename Visit>
-void for_cells_of(const Eigen::Vector3d& map_m, Visit&& visit) {
-  for (int i = 0; i < 27; ++i) visit(key_of(map_m, i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-}
-
-/// A false positive.
-struct FalsePoint {
-  Eigen::Vector3d map_m;
-  double time_s;
-  Reason reason;
-};
-
-/// Returns when a scan first hit each cell that lies around a false positive, in seconds.
-std::unordered_map<std::uint64_t, double> first_hits(const ResultScans& scans,
-                                                     const std::vector<double>& times_s,
-                                                     const std::vector<FalsePoint>& points) {
-  std::unordered_map<std::uint64_t, double> first;
-  for (const FalsePoint& point : points) {
-    for_cells_of(point.map_m, [&](std::uint64_t key) {
-      first.emplace(key, std::numeric_limits<double>::infinity());
-    });
+void add(const JudgedScan& scan, const std::vector<ErrorScene>& scenes, ReasonTable& table) {
+  for (std::size_t i = 0; i < scan.outcomes.size(); ++i) {
+    ReasonCounts& counts = table.at(row_of(scan, i));
+    const PointOutcome outcome = scan.outcomes[i];
+    counts.tp += outcome == PointOutcome::kTruePositive ? 1U : 0U;
+    counts.fp += outcome == PointOutcome::kFalsePositive ? 1U : 0U;
+    counts.fn += outcome == PointOutcome::kFalseNegative ? 1U : 0U;
+    ++counts.scenes.at(static_cast<std::size_t>(scenes[i]));
   }
-  if (points.empty()) return first;
-  Progress progress("first hits of " + scans.sequence().name(), times_s.size());
-  for (std::size_t k = 0; k < times_s.size(); ++k) {
-    const Frame frame = scans.sequence().read(k);
-    for (const Point& point : frame.points) {
-      const Eigen::Vector3d map_m =
-          frame.map_from_sensor * Eigen::Vector3d(point.x, point.y, point.z);
-      if (!map_m.allFinite()) continue;
-      const auto cell = first.find(key_of(map_m, 0, 0, 0));
-      if (cell != first.end()) cell->second = std::min(cell->second, times_s[k]);
-    }
-    progress.advance();
-  }
-  return first;
 }
 
 }  // namespace
 
-ReasonTable count_reasons(const ResultScans& scans) {
-  if (!scans.has_reasons()) {
-    throw DataError(scans.result().folder() / "reasons", "is not there",
-                    "a run of hmm-mos-plus with --write scores");
-  }
-  std::vector<std::size_t> all(scans.sequence().size());
-  for (std::size_t k = 0; k < all.size(); ++k) all[k] = k;
-  const std::vector<double> times_s = scan_times(scans.sequence(), all).times_s;
+ReasonTable count_reasons(const ResultScans& scans, unsigned threads) {
+  const std::vector<double> times_s = times_of_all(scans.sequence());
+  const std::vector<std::size_t> scored = scans.scored_scans();
   ReasonTable table{};
-  std::vector<FalsePoint> false_points;
-  for (const std::size_t k : scans.scored_scans()) {
-    const JudgedScan scan = scans.read(k);
-    for (std::size_t i = 0; i < scan.outcomes.size(); ++i) {
-      ReasonCounts& counts = table.at(static_cast<std::size_t>(scan.reasons[i]));
-      const PointOutcome outcome = scan.outcomes[i];
-      counts.tp += outcome == PointOutcome::kTruePositive ? 1U : 0U;
-      counts.fn += outcome == PointOutcome::kFalseNegative ? 1U : 0U;
-      if (outcome != PointOutcome::kFalsePositive) continue;
-      ++counts.fp;
-      const Point& point = scan.frame.points[i];
-      false_points.push_back(
-          {scan.frame.map_from_sensor * Eigen::Vector3d(point.x, point.y, point.z), times_s[k],
-           scan.reasons[i]});
+  ThreadPool pool(threads);
+  Progress progress("errors of " + scans.sequence().name(), scored.size());
+  std::mutex table_mutex;
+  pool.for_ranges(scored.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const JudgedScan scan = scans.read(scored[i]);
+      const std::vector<ErrorScene> scenes = error_scenes(scans, scored[i], scan, times_s);
+      const std::lock_guard lock(table_mutex);
+      add(scan, scenes, table);
+      progress.advance();
     }
-  }
-  const auto first = first_hits(scans, times_s, false_points);
-  for (const FalsePoint& point : false_points) {
-    double first_s = std::numeric_limits<double>::infinity();
-    for_cells_of(point.map_m,
-                 [&](std::uint64_t key) { first_s = std::min(first_s, first.at(key)); });
-    if (first_s > point.time_s - kInView_s) {
-      ++table.at(static_cast<std::size_t>(point.reason)).fp_in_view;
-    }
-  }
+  });
   return table;
 }
 
@@ -108,23 +54,28 @@ nlohmann::ordered_json to_json(const ReasonTable& table) {
   nlohmann::ordered_json json = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < table.size(); ++i) {
     const ReasonCounts& counts = table[i];
-    json.push_back({{"reason", kNames[i]},
-                    {"tp", counts.tp},
-                    {"fp", counts.fp},
-                    {"fp_first_hit_within_1_s", counts.fp_in_view},
-                    {"fn", counts.fn}});
+    if (counts.tp + counts.fp + counts.fn == 0) continue;
+    nlohmann::ordered_json row = {
+        {"reason", kNames[i]}, {"tp", counts.tp}, {"fp", counts.fp}, {"fn", counts.fn}};
+    for (std::size_t s = 1; s < counts.scenes.size(); ++s) {
+      row["scenes"][kErrorSceneNames[s]] = counts.scenes[s];
+    }
+    json.push_back(std::move(row));
   }
   return json;
 }
 
 Sheet reasons_sheet(const ReasonTable& table) {
-  Sheet sheet{
-      .columns = {
-          {"decided by", Unit::kText}, {"TP"}, {"FP"}, {"of places first hit within 1 s"}, {"FN"}}};
+  Sheet sheet{.columns = {{"decided by", Unit::kText}, {"right"}, {"wrong"}}};
+  for (std::size_t s = 1; s < kErrorSceneNames.size(); ++s) {
+    sheet.columns.push_back({kErrorSceneNames[s]});
+  }
   for (std::size_t i = 0; i < table.size(); ++i) {
     const ReasonCounts& counts = table[i];
     if (counts.tp + counts.fp + counts.fn == 0) continue;
-    sheet.rows.push_back({kNames[i], counts.tp, counts.fp, counts.fp_in_view, counts.fn});
+    std::vector<Cell>& cells = sheet.rows.emplace_back();
+    cells = {kNames[i], counts.tp, counts.fp + counts.fn};
+    for (std::size_t s = 1; s < counts.scenes.size(); ++s) cells.emplace_back(counts.scenes[s]);
   }
   return sheet;
 }

@@ -48,7 +48,12 @@ void take_view(const std::string& view, RenderOptions& options) {
 Answer render(RenderFlags flags) {
   take_view(flags.view, flags);
   for (const std::string& what : flags.shown) {
-    (what == "boxes" ? flags.boxes : flags.picture.by_reason) = true;
+    (what == "boxes"    ? flags.boxes
+     : what == "scenes" ? flags.scenes
+                        : flags.picture.by_reason) = true;
+  }
+  if (flags.scenes && flags.picture.by_reason) {
+    throw UsageError("--show: reasons and scenes both colour points, expected one of them");
   }
   return render_scans(std::move(flags));
 }
@@ -84,8 +89,9 @@ CommandRun add_render(CLI::App& command) {
       ->capture_default_str();
   add_list(command, "--show WHAT,...", options->shown,
            "Also boxes, around what moves, with speeds; reasons, colours by why a point is "
-           "called moving, of a run with --write scores")
-      ->check(CLI::IsMember({"boxes", "reasons"}));
+           "called moving, of a run with --write scores; scenes, colours by what lies around false "
+           "and missed points")
+      ->check(CLI::IsMember({"boxes", "reasons", "scenes"}));
   command.add_flag("--dark", options->picture.dark, "Draw light points on a dark ground");
   return [options] { return render(*options); };
 }

@@ -135,7 +135,7 @@ Answer breakdown_of_run(const StatsFlags& options, const CLI::App& command) {
     if (opened.scored_scans().empty()) continue;
     breakdowns.push_back(
         break_down(opened.sequence(), opened.scored_scans(), opened.labels(), task));
-    if (options.parts.reason) breakdowns.back().reasons = count_reasons(opened);
+    if (options.parts.reason) breakdowns.back().reasons = count_reasons(opened, options.threads);
   }
   if (breakdowns.empty()) {
     throw DataError(options.input, "has no scan with truth",
@@ -147,7 +147,8 @@ Answer breakdown_of_run(const StatsFlags& options, const CLI::App& command) {
 Answer breakdown_of(const StatsFlags& options, const CLI::App& command) {
   if (!options.predictions) return breakdown_of_run(options, command);
   if (options.parts.reason) {
-    throw UsageError("--by reason: labels of others say no reasons, expected a run in RUN");
+    throw UsageError(
+        "--by reason: is of results, expected those of `mosbench run` or `mosbench score` as RUN");
   }
   if (options.data) {
     throw UsageError(fmt::format("--data {}: RUN is the data set with --predictions, expected one",
@@ -193,10 +194,11 @@ Answer stats(StatsFlags options, const CLI::App& command) {
 CommandRun add_stats(CLI::App& command) {
   auto options = std::make_shared<StatsFlags>();
   add_dataset_flags(command, *options, "RUN");
-  add_list(command, "--by WHAT,...", options->by,
-           "Show right and wrong points by range, height, object and the reason why they move; or "
-           "precision over recall by threshold; or, in JSON and CSV, by scan (default: intervals "
-           "by sequence)")
+  add_list(
+      command, "--by WHAT,...", options->by,
+      "Show right and wrong points by range, height, object and the reason why they move, with "
+      "what lies around wrong ones; or precision over recall by threshold; or, in JSON and "
+      "CSV, by scan (default: intervals by sequence)")
       ->check(CLI::IsMember({"range", "height", "object", "reason", "threshold", "scan"}));
   add(command, "--data DIR", options->data,
       "Folder of the data set (default: where the run read it)");

@@ -118,12 +118,15 @@ void draw(const RenderOptions& options, const ResultScans& scans,
           const std::function<void(const std::string& stem, std::string_view png)>& take) {
   std::vector<std::vector<MovingBox>> boxes;
   if (options.boxes) boxes = boxes_of(scans, chosen);
+  const std::vector<double> times_s = times_of_all(scans.sequence());
   for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const JudgedScan scan = scans.read(chosen[i]);
     ScanPictureOptions picture = options.picture;
     picture.title = title_of(scans.result(), chosen[i]);
     picture.orbit_rad = orbit_rad_of(options, i, chosen.size());
     if (options.boxes) picture.boxes = boxes[i];
-    take(scans.rows()[chosen[i]].stem, scan_picture(scans.read(chosen[i]), picture).png());
+    if (options.scenes) picture.scenes = error_scenes(scans, chosen[i], scan, times_s);
+    take(scans.rows()[chosen[i]].stem, scan_picture(scan, picture).png());
   }
 }
 

@@ -19,6 +19,7 @@ struct RenderOptions {
   std::optional<double> azimuth_deg;  ///< of a camera around the sensor; nothing: from above
   std::optional<double> turn_deg;     ///< that it goes on over several scans
   bool boxes = false;
+  bool scenes = false;  ///< colours say what lies around false and missed points
 
   /// Whether one picture is drawn: of a scan by its number, or of the worst.
   bool one_scan() const {

@@ -49,6 +49,7 @@ bool stands_out(PointOutcome outcome) {
   return outcome != PointOutcome::kTrueNegative && outcome != PointOutcome::kIgnoredStatic;
 }
 bool stands_out(Reason reason) { return reason != Reason::kNone; }
+bool stands_out(ErrorScene scene) { return scene != ErrorScene::kNone; }
 
 /// What the points of a scan are drawn as.
 struct Kinds {
@@ -100,14 +101,19 @@ double ground_height_m(const JudgedScan& scan) {
   return *low;
 }
 
+Kinds kinds_of(const JudgedScan& scan, const ScanPictureOptions& options, const Palette& palette) {
+  if (!options.scenes.empty()) return kinds_of(options.scenes, palette.scenes);
+  return options.by_reason ? kinds_of(scan.reasons, palette.reasons)
+                           : kinds_of_outcomes(scan, palette.outcomes);
+}
+
 class ScanPicture {
  public:
   ScanPicture(const JudgedScan& scan, const ScanPictureOptions& options)
       : scan_(scan),
         options_(options),
         palette_(palette(options.dark)),
-        kinds_(options.by_reason ? kinds_of(scan.reasons, palette_.reasons)
-                                 : kinds_of_outcomes(scan, palette_.outcomes)),
+        kinds_(kinds_of(scan, options, palette_)),
         range_m_(options.range_m > 0.0 ? options.range_m : reach_m(scan)),
         view_(options.orbit_rad, range_m_, static_cast<double>(options.size_pixels)),
         text_scale_(std::max(1, static_cast<int>(options.size_pixels + 500) / 1000)),

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "eval/answer/picture.hpp"
+#include "eval/breakdown/error_scenes.hpp"
 #include "eval/breakdown/object_tracks.hpp"
 #include "eval/result/result_scans.hpp"
 
@@ -41,6 +42,7 @@ struct ScanPictureOptions {
   double range_m = 0.0;  ///< from the sensor to the edge; 0: the range of 98 % of the points
   bool dark = false;
   bool by_reason = false;  ///< colours say why a point is called moving, which the scan has to know
+  std::vector<ErrorScene> scenes;  ///< by point: colours say them; empty where they are not asked
   /// Where a camera looks that circles the sensor, 30 degrees above it: 0 is forward as the sensor
   /// faces, counterclockwise from above. nullopt: from straight above, the sensor in the middle and
   /// facing up.
@@ -52,8 +54,8 @@ struct ScanPictureOptions {
 /// Returns the range in metres that holds 98 % of the points of a scan, at least that of one ring.
 double reach_m(const JudgedScan& scan);
 
-/// Draws a scan: each point in the colour of its outcome or reason, what stands out on top, with
-/// counts of all points, range rings on the ground and a scale.
+/// Draws a scan: each point in the colour of its outcome, reason or scene, what stands out on top,
+/// with counts of all points, range rings on the ground and a scale.
 Picture scan_picture(const JudgedScan& scan, const ScanPictureOptions& options);
 
 }  // namespace mosbench

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <type_traits>
 
 #include "datasets/perturb/perturbation.hpp"
@@ -34,7 +35,8 @@ Value parsed(std::string_view text, const Legal& legal) {
         fmt::format("'{}' is not known, expected one of {}", text, fmt::join(legal, ", ")));
   } else if constexpr (std::is_same_v<Value, double>) {
     const auto number = parse_double(text);
-    if (number && (*number > legal.lowest || (*number == legal.lowest && legal.lowest_is_legal))) {
+    if (number && *number <= legal.highest &&
+        (*number > legal.lowest || (*number == legal.lowest && legal.lowest_is_legal))) {
       return *number;
     }
     throw UsageError(fmt::format("{} is no {}, expected {}", text, legal.noun, legal.expected));
@@ -105,8 +107,10 @@ void describe(const Legal& legal, ReadingField& field) {
   } else if constexpr (std::is_same_v<Legal, FieldCount>) {
     field.legal = fmt::format("{} to {}", legal.lowest, legal.highest);
   } else if constexpr (std::is_same_v<Legal, FieldQuantity>) {
-    field.legal = legal.lowest_is_legal ? fmt::format("{} or more", legal.lowest)
-                                        : fmt::format("above {}", legal.lowest);
+    field.legal = std::isfinite(legal.highest)
+                      ? fmt::format("{} to {}", legal.lowest, legal.highest)
+                  : legal.lowest_is_legal ? fmt::format("{} or more", legal.lowest)
+                                          : fmt::format("above {}", legal.lowest);
   } else {
     field.legal = field.type.empty() ? "on or off" : fmt::format("a {}", lower_case(field.type));
   }

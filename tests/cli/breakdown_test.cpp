@@ -2,12 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "eval/breakdown/reasons.hpp"
+#include "eval/breakdown/error_scenes.hpp"
 #include "eval/result/result_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
@@ -94,28 +94,7 @@ TEST(Breakdown, OfAFolderOfResultsFindsDataLabelsAndRules) {
   EXPECT_THAT(cli::run({"breakdown", folder / "room"}).err, HasSubstr("--predictions: is missing"));
 }
 
-using CellOfPlace = std::array<long, 3>;
-
-CellOfPlace cell_of_place(const Frame& frame, const Point& point) {
-  const Eigen::Vector3d map_m = frame.map_from_sensor * Eigen::Vector3d(point.x, point.y, point.z);
-  CellOfPlace cell{};
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    cell.at(static_cast<std::size_t>(i)) = std::lround(std::floor(map_m[i] / kPlaceCell_m));
-  }
-  return cell;
-}
-
-/// When each cell of the map is first hit, by the index of the scan.
-std::map<CellOfPlace, std::size_t> first_hits_of(const Sequence& sequence) {
-  std::map<CellOfPlace, std::size_t> first;
-  for (std::size_t k = 0; k < sequence.size(); ++k) {
-    const Frame frame = sequence.read(k);
-    for (const Point& point : frame.points) first.try_emplace(cell_of_place(frame, point), k);
-  }
-  return first;
-}
-
-TEST(Breakdown, ByReasonSaysWhichStepDecidedAndWhatHasJustComeIntoView) {
+TEST(Breakdown, ByReasonSaysWhichStepDecidedAndWhatLiesAround) {
   const TempFolder folder;
   const std::string data = folder / "data", run = folder / "run";
   ASSERT_EQ(cli::run({"simulate", "--layout", "semantickitti", "--scene", "street", "--scans", "24",
@@ -128,51 +107,56 @@ TEST(Breakdown, ByReasonSaysWhichStepDecidedAndWhatHasJustComeIntoView) {
             0);
   const cli::Answer answer = cli::run({"stats", run, "--by", "reason", "--json"});
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
-  const auto shown = nlohmann::json::parse(answer.out).at("sequences").at(0).at("by_reason");
-  ASSERT_EQ(shown.size(), kReasonCount);
+  EXPECT_EQ(cli::run({"stats", run, "--by", "reason", "--json", "--threads", "1"}).out, answer.out);
 
   const Result result = read_result(folder / "run/08/result.json");
   const ResultScans scans(result, std::nullopt);
-  const auto first = first_hits_of(scans.sequence());
-  ReasonTable expected{};
-  for (const std::size_t k : scans.scored_scans()) {
+  constexpr std::array kSteps = {"missed", "arrived", "departed", "grown", "feet", "predicted"};
+  // By step: tp, fp and fn, then wrong points by scene.
+  std::map<std::string, std::vector<int>> expected, shown;
+  for (std::size_t k = 0; k < 24; ++k) {
     const JudgedScan scan = scans.read(k);
-    for (std::size_t i = 0; i < scan.outcomes.size(); ++i) {
-      ReasonCounts& counts = expected.at(static_cast<std::size_t>(scan.reasons[i]));
-      if (scan.outcomes[i] == PointOutcome::kTruePositive) ++counts.tp;
-      if (scan.outcomes[i] == PointOutcome::kFalseNegative) ++counts.fn;
-      if (scan.outcomes[i] != PointOutcome::kFalsePositive) continue;
-      ++counts.fp;
-      std::size_t oldest = k;
-      for (int n = 0; n < 27; ++n) {
-        CellOfPlace cell = cell_of_place(scan.frame, scan.frame.points[i]);
-        cell[0] += n % 3 - 1, cell[1] += n / 3 % 3 - 1, cell[2] += n / 9 - 1;
-        const auto hit = first.find(cell);
-        if (hit != first.end()) oldest = std::min(oldest, hit->second);
-      }
-      if (oldest + 10 > k) ++counts.fp_in_view;  // scans are 0.1 s apart
+    std::optional<Frame> earlier;
+    if (k >= 10) earlier = scans.sequence().read(k - 10);  // scans are 0.1 s apart
+    const std::vector<ErrorScene> scenes =
+        error_scenes(scan, earlier ? &*earlier : nullptr, scan.frame.truth.value());
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      const auto outcome = static_cast<std::size_t>(scan.outcomes[i]);
+      if (outcome > 2) continue;  // right and static, or not judged
+      auto& row = expected[kSteps.at(static_cast<std::size_t>(scan.reasons[i]))];
+      row.resize(2 + kErrorSceneNames.size());
+      ++row[outcome];
+      if (outcome > 0) ++row[2 + static_cast<std::size_t>(scenes[i])];
     }
   }
-  std::uint64_t in_view = 0, stood = 0;
-  for (std::size_t i = 0; i < expected.size(); ++i) {
-    const ReasonCounts& counts = expected[i];
-    EXPECT_EQ(shown[i].at("tp"), counts.tp) << i;
-    EXPECT_EQ(shown[i].at("fp"), counts.fp) << i;
-    EXPECT_EQ(shown[i].at("fn"), counts.fn) << i;
-    EXPECT_EQ(shown[i].at("fp_first_hit_within_1_s"), counts.fp_in_view) << i;
-    in_view += counts.fp_in_view, stood += counts.fp - counts.fp_in_view;
+  const nlohmann::json parsed = nlohmann::json::parse(answer.out);
+  for (const nlohmann::json& row : parsed.at("sequences").at(0).at("by_reason")) {
+    auto& counts = shown[row.at("reason")];
+    for (const char* outcome : {"tp", "fp", "fn"}) counts.push_back(row.at(outcome));
+    for (std::size_t s = 1; s < kErrorSceneNames.size(); ++s) {
+      counts.push_back(row.at("scenes").at(kErrorSceneNames.at(s)));
+    }
   }
-  EXPECT_GT(in_view, 0U);
-  EXPECT_GT(stood, 0U);
-  EXPECT_GT(expected[static_cast<std::size_t>(Reason::kNone)].fn, 0U);
+  EXPECT_EQ(shown, expected);
+  EXPECT_GT(expected.at("missed").at(4), 0) << "first sight";
+  EXPECT_GT(expected.at("arrived").at(5), 0) << "poses";
   EXPECT_THAT(cli::run({"stats", run, "--by", "reason"}).out,
-              testing::AllOf(HasSubstr("decided by"), HasSubstr("arrived"), HasSubstr("missed")));
-
-  ASSERT_EQ(cli::run({"run", data, "--out", folder / "plain"}).exit_code, 0);
-  const cli::Answer plain = cli::run({"stats", folder / "plain", "--by", "reason"});
-  EXPECT_EQ(plain.exit_code, 3);
-  EXPECT_THAT(plain.err, HasSubstr("a run of hmm-mos-plus with --write scores"));
+              testing::AllOf(HasSubstr("decided by"), HasSubstr("arrived"), HasSubstr("missed"),
+                             HasSubstr("vegetation")));
   EXPECT_EQ(cli::run({"stats", data, "--predictions", run, "--by", "reason"}).exit_code, 2);
+}
+
+TEST(Breakdown, ByReasonHasOneRowOfWhatAMethodMovesThatSaysNone) {
+  const TempFolder folder;
+  cli::write_small_sequence(folder / "room", kScansOfBreakdown);
+  const std::string run = folder / "run";
+  ASSERT_EQ(cli::run({"run", folder / "room", "--protocol", "mapmos", "--out", run}).exit_code, 0);
+  const cli::Answer answer = cli::run({"stats", run, "--by", "reason", "--as", "csv"});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("decided_by,right,wrong,near_moving,first_sight,poses,"));
+  EXPECT_THAT(answer.out, HasSubstr("\ncalled moving,"));
+  EXPECT_THAT(answer.out, HasSubstr("\nmissed,0,"));
+  EXPECT_THAT(answer.out, testing::Not(HasSubstr("arrived")));
 }
 
 TEST(Stats, RefusesWhatItWouldPassOverAndReadsDataElsewhere) {

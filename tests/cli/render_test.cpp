@@ -36,6 +36,19 @@ TEST_F(Render, DrawsAScanWithoutBrowserAndTheSameEachTime) {
   EXPECT_EQ(cli::run({"render", run(), "--scan", "worst", "-o", folder_ / "w.png"}).exit_code, 0);
 }
 
+TEST_F(Render, ColoursWrongPointsByTheirScenesWhenAskedTo) {
+  const auto draw = [&](const char* name, std::vector<std::string> flags) {
+    flags.insert(flags.begin(), {"render", run(), "--scans", "1", "-o", folder_ / name});
+    return cli::run(flags);
+  };
+  ASSERT_EQ(draw("plain.png", {}).exit_code, 0);
+  ASSERT_EQ(draw("scenes.png", {"--show", "scenes"}).exit_code, 0);
+  EXPECT_NE(read_file(folder_ / "plain.png"), read_file(folder_ / "scenes.png"));
+  const cli::Answer both = draw("both.png", {"--show", "reasons,scenes"});
+  EXPECT_EQ(both.exit_code, 2);
+  EXPECT_THAT(both.err, HasSubstr("--show: reasons and scenes both colour points"));
+}
+
 TEST_F(Render, DrawsTheSameOfLabelsThatWereScored) {
   const std::string net = folder_ / "net";
   ASSERT_EQ(cli::run({"score", folder_ / "00", "--predictions", run(), "--out", net}).exit_code, 0);

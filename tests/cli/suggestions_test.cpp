@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "datasets/formats/times_file.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/cli/small_sequence.hpp"
 
@@ -78,6 +79,32 @@ TEST_F(Suggestions, OfTheDoctorRun) {
       suggested_by({"doctor", path("bare"), "--dataset", "semantickitti", "--deskew", "none"}, 1),
       testing::AllOf(HasSubstr("mosbench run "), HasSubstr(" --dataset semantickitti"),
                      HasSubstr(" --deskew none --odometry simple")));
+}
+
+TEST_F(Suggestions, OfTheDoctorReadPosesByTheClockOfTheScans) {
+  std::string poses;
+  std::vector<std::int64_t> stamps_ns;
+  for (int k = 0; k < 6; ++k) {
+    stamps_ns.push_back(k * 100'000'000);
+    poses += fmt::format("{:.2f} 0 0 0 0 0 0 1\n", 0.1 * k + 0.08);
+  }
+  write_times(path("bare/times.txt"), stamps_ns);
+  folder_.write("late.tum", poses);
+  const std::vector<std::string> doctor = {"doctor", path("bare"), "--poses", folder_ / "late.tum"};
+  EXPECT_EQ(cli::run(doctor).exit_code, 1);
+  EXPECT_THAT(suggested_by(doctor, 1), HasSubstr(" --read pose_offset_s=-0.08\n"));
+  std::vector<std::string> mended = doctor;
+  mended.insert(mended.end(), {"--read", "pose_offset_s=-0.08"});
+  const cli::Answer sound = cli::run(mended);
+  EXPECT_EQ(sound.exit_code, 0) << sound.out;
+  EXPECT_THAT(sound.out, testing::AllOf(HasSubstr("by stamp, 0 of 6 interpolated"),
+                                        HasSubstr("  pose_offset_s   -0.08")));
+  // Poses without stamps have no clock.
+  mended[3] = path("set/sequences/00/poses.txt");
+  const cli::Answer rows = cli::run(mended);
+  EXPECT_EQ(rows.exit_code, 2);
+  EXPECT_THAT(rows.err, HasSubstr("--read pose_offset_s: the poses of bare are not looked up by "
+                                  "stamps, expected those of a TUM file or a bag"));
 }
 
 TEST_F(Suggestions, ForScansWithoutPosesCarryTheFlagsAndRun) {

@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -157,6 +158,25 @@ TEST(PlusObjectsThatLeave, AreFoundOnlineByWhatDeparted) {
   EXPECT_EQ(scans_with_motion({labels.begin(), labels.begin() + 11}), 0U);
   config.min_track_steps = 0;
   EXPECT_EQ(scans_with_motion(plus_labels(world, config)), 0U);
+}
+
+/// A level bar before a wall until the tenth scan, one voxel high or two.
+TEST(PlusObjectsThatLeave, AreEdgesBetweenTwoBeamsWhereTheyAreSeenToBeFlat) {
+  const auto departed_scans = [](float low_m) {
+    const SmallWorld world = world_ahead(20, [&](std::size_t k, float y, float z) {
+      const bool is_bar = std::abs(2.0F * y) < 0.9F && 2.0F * z > low_m && 2.0F * z < 0.22F;
+      return k < 10 && is_bar ? 2.0F : 4.0F;
+    });
+    return scans_with_motion(plus_labels(world, plus_of_a_room(3)));
+  };
+  EXPECT_EQ(departed_scans(0.03F), 0U);
+  EXPECT_GT(departed_scans(-0.22F), 0U);
+}
+
+TEST(PlusDelays, AreSaidToBeLongBeyondFifteenScans) {
+  EXPECT_THAT(hmm_mos_plus::Pipeline(plus_of_a_room(15), {}).remarks(), testing::IsEmpty());
+  EXPECT_THAT(hmm_mos_plus::Pipeline(plus_of_a_room(16), {}).remarks(),
+              testing::ElementsAre(testing::HasSubstr("after 16 scans surfaces")));
 }
 
 /// Returns the stamps of `scans` scans.

@@ -121,8 +121,10 @@ ArrivalClasses classify(const VoxelizedScan& scan, const RememberedMap& map, con
     const BlockMask occupied = scan.occupied[i] & past->known.occupied;
     classes.arrived[i] = history.sure_within(occupied, seed_age_ticks, past->tick);
     classes.fresh[i] = history.sure_within(classes.arrived[i], fresh_age_ticks, past->tick);
-    if (classes.arrived[i].any()) {
-      classes.open[i] = open_among(classes.arrived[i], scan, map, scan.measured.blocks[i]);
+    const bool may_depart = config.map.delay_scans > 0;
+    const BlockMask& candidates = may_depart ? occupied : classes.arrived[i];
+    if (candidates.any()) {
+      classes.open[i] = open_among(candidates, scan, map, scan.measured.blocks[i]);
     }
     classes.aged[i] = history.aged() & occupied;
     const BlockMask came = history.arrived_within(classes.aged[i], object_age_ticks, past->tick);

@@ -30,7 +30,7 @@ struct ArrivalClasses {
   ScanMasks fresh;     ///< arrived just now: among the seeds, a sign that an object still moves
   ScanMasks settled;   ///< there for longer: they connect nothing
   ScanMasks aged;      ///< there for some scans: most of an object that moves is not
-  ScanMasks open;      ///< arrived of late, where the scan saw through straight above or below
+  ScanMasks open;      ///< seen through straight above or below; online of what arrived alone
   ScanMasks standing;  ///< aged, did not arrive within half of object_age_s: not grown into
 
   std::size_t memory_bytes() const { return 7 * seeds.capacity() * sizeof(BlockMask); }

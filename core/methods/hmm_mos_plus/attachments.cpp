@@ -18,7 +18,7 @@ constexpr std::uint32_t kLeavesTicks = 2;
 constexpr double kLeftShare = 0.1;
 /// Limits for what left fewer: settled voxels beside it per voxel, and the share that arrived.
 constexpr double kStayingSettledShare = 0.05, kStayingArrivedShare = 0.9;
-/// What is new and arrived by less came into view.
+/// What is new, or left nothing behind, and arrived by less came into view.
 constexpr double kNewArrivedShare = 0.3;
 /// A flat thing is seen to be so by more than this share of what arrived.
 constexpr double kOpenShare = 0.2;
@@ -85,8 +85,9 @@ Attachments::Seen Attachments::look_at(const VoxelizedScan& scan, const ArrivalC
     const BlockIndex& block = scan.measured.blocks[slot];
     const BlockMask* own = voxels.mask_of(block);
     if (own != nullptr) {
-      seen.arrived += (*own & classes.arrived[slot]).count();
-      seen.open += (*own & classes.open[slot]).count();
+      const BlockMask arrived = *own & classes.arrived[slot];
+      seen.arrived += arrived.count();
+      seen.open += (arrived & classes.open[slot]).count();
     }
     BlockMask beside = without(classes.settled[slot], low.in(slot));
     if (own != nullptr) beside = without(beside, *own);
@@ -116,9 +117,10 @@ bool Attachments::is_attached(const Seen& component, const RememberedMap& map) c
   if (all.settled > max_settled_share_ * all.voxels && all.arrived < kArrivedShare * all.voxels) {
     return true;
   }
-  return component.at - all.since >= kLeavesTicks &&
-         all.settled > kStayingSettledShare * all.voxels &&
-         all.arrived < kStayingArrivedShare * all.voxels &&
+  const bool stays = all.settled > kStayingSettledShare * all.voxels
+                         ? all.arrived < kStayingArrivedShare * all.voxels
+                         : all.arrived < kNewArrivedShare * all.voxels;
+  return component.at - all.since >= kLeavesTicks && stays &&
          static_cast<double>(left_in(all.box, component.at, map)) <
              kLeftShare * static_cast<double>(component.voxels);
 }

@@ -1,6 +1,7 @@
 #include "core/methods/hmm_mos_plus/pipeline.hpp"
 
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "core/base/method_row.hpp"
@@ -130,6 +131,15 @@ std::size_t Pipeline::held_bytes() const {
     bytes += held.scan.memory_bytes() + held.classes.memory_bytes();
   }
   return bytes;
+}
+
+std::vector<std::string> Pipeline::remarks() const {
+  constexpr int kMostDelay_scans = 15;
+  if (config_.map.delay_scans <= kMostDelay_scans) return {};
+  return {"after " + std::to_string(config_.map.delay_scans) +
+          " scans surfaces that are seen from elsewhere look as if they had left: precision falls "
+          "beyond a delay of " +
+          std::to_string(kMostDelay_scans) + "; --set delay=all judges whole tracks instead"};
 }
 
 void check(const Config& config) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <string>
 #include <vector>
 
 #include "core/methods/hmm_mos/mapping.hpp"
@@ -21,6 +22,8 @@ class Pipeline final : public hmm_mos::MappedMethod {
  public:
   /// Throws std::invalid_argument as `check` does, and for 0 threads.
   explicit Pipeline(const Config& config, const RunContext& context = {});
+
+  std::vector<std::string> remarks() const override;
 
  private:
   /// A scan whose labels are not final yet.

@@ -120,6 +120,10 @@ TEST(PlusAttachments, LeaveNothingBehind) {
   const RowBesideOthers alone{.arrived = 8, .settled = 0}, whole{.arrived = 9, .settled = 1};
   EXPECT_TRUE(moves_last({{0, alone}, {2, alone}}));
   EXPECT_TRUE(moves_last({{0, whole}, {2, whole}}));
+  const RowBesideOthers in_view{.arrived = 2, .settled = 0}, enough{.arrived = 3, .settled = 0};
+  EXPECT_TRUE(moves_last({{0, in_view}, {1, in_view}})) << "it had no time to leave";
+  EXPECT_FALSE(moves_last({{0, in_view}, {2, in_view}}));
+  EXPECT_TRUE(moves_last({{0, enough}, {2, enough}}));
 }
 
 TEST(PlusAttachments, WaitForASecondScanWhereTheyCameIntoView) {

@@ -12,6 +12,7 @@ namespace {
 
 using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
 
 class BagParts : public BagPoses {};
 
@@ -64,9 +65,40 @@ TEST_P(BagParts, AreNoneWhereTheirTimesAreApart) {
   add_part("run_1", 0);
   add_part("run_2", 100);
   add_part("other_3", 103);
+  add_part("run_9", 2000);
   const Dataset dataset = open_dataset(folder_ / "drives", {});
-  EXPECT_EQ(dataset.sequences.size(), 4U);
+  EXPECT_EQ(dataset.sequences.size(), 5U);
   EXPECT_EQ(dataset.sequences[0]->name(), "other_3");
+  for (const auto& sequence : dataset.sequences) {
+    EXPECT_THAT(sequence->recording().doubts, Not(Contains(HasSubstr("not there"))));
+  }
+}
+
+TEST_P(BagParts, ThatAreNotThereAreNamedWithTheTimeThatIsMissing) {
+  std::filesystem::create_directories(folder_ / "split");
+  for (const int number : {8, 9, 11, 12}) {
+    Drive drive;
+    for (int k = 50 * (number - 8); k < 50 * (number - 7); ++k) {
+      add_cloud(drive, at(k));
+      add_tf(drive, {at(k), "map", "lidar", pose_at_x(k)});
+    }
+    const auto file = write(drive, "a_" + std::to_string(number));
+    std::filesystem::rename(file, folder_ / "split" / file.filename());
+  }
+  const Dataset dataset = open_dataset(folder_ / "split", {});
+  ASSERT_EQ(dataset.sequences.size(), 2U);
+  EXPECT_EQ(dataset.sequences[0]->name(), "a_8");
+  EXPECT_EQ(dataset.sequences[1]->name(), "a_11");
+  for (const auto& sequence : dataset.sequences) {
+    EXPECT_EQ(sequence->size(), 100U);
+    EXPECT_THAT(sequence->recording().doubts,
+                Contains(testing::AllOf(HasSubstr("part 10 of a."),
+                                        HasSubstr("5.1 s are missing between parts 9 and 11"))));
+  }
+  // A single part after the hole says so, too; drives that are far apart do not.
+  std::filesystem::remove(dataset.sequences[1]->recording().files.back());
+  EXPECT_THAT(open_dataset(folder_ / "split", {}).sequences[1]->recording().doubts,
+              Contains(HasSubstr("part 10 of a.")));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "datasets/rosbag/bag_turns.hpp"
@@ -13,6 +14,7 @@
 namespace mosbench {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
@@ -71,9 +73,9 @@ class RoomDrive : public Sequence {
     frame.points = view_of_room(room_from_sensor(0.1 * static_cast<double>(scan_index), evenly_));
   }
   std::string doubt() const {
-    return doubt_about_clock(*this,
-                             [&](std::int64_t time_ns) { return std::optional(pose_at(time_ns)); })
-        .value_or("");
+    const auto doubt = doubt_about_clock(
+        *this, [&](std::int64_t time_ns) { return std::optional(pose_at(time_ns)); });
+    return doubt ? to_string(*doubt) : "";
   }
 
  private:
@@ -82,12 +84,13 @@ class RoomDrive : public Sequence {
 };
 
 TEST(PoseClock, IsDoubtedWithTheTimeByWhichItIsOff) {
-  for (const auto& [ahead_s, said] : {std::pair{0.05, "poses of 50 ms after"},
-                                      {-0.05, "poses of 50 ms before"},
-                                      {0.15, "poses of 150 ms after"},
-                                      {0.3, "poses of 300 ms after"},
-                                      {-0.7, "poses of 700 ms before"}}) {
-    EXPECT_THAT(RoomDrive(12, false, ahead_s).doubt(), HasSubstr(said));
+  for (const auto& [ahead_s, said, mended] :
+       {std::tuple{0.05, "poses of 50 ms after", "pose_offset_s -0.05 reads"},
+        {-0.05, "poses of 50 ms before", "pose_offset_s 0.05 reads"},
+        {0.15, "poses of 150 ms after", "pose_offset_s -0.15 reads"},
+        {0.3, "poses of 300 ms after", "pose_offset_s -0.3 reads"},
+        {-0.7, "poses of 700 ms before", "pose_offset_s 0.7 reads"}}) {
+    EXPECT_THAT(RoomDrive(12, false, ahead_s).doubt(), AllOf(HasSubstr(said), HasSubstr(mended)));
   }
 }
 
@@ -117,7 +120,8 @@ TEST(ScansInTurn, OfTwoSensorsAreDoubted) {
 /// Clocks as the recorder shows them: scans last 0.1 s, and come `late_s` after their stamps.
 class BagClocks : public BagPoses {
  protected:
-  std::vector<std::string> doubts(double scans_late_s, double poses_late_s) const {
+  std::vector<std::string> doubts(double scans_late_s, double poses_late_s,
+                                  const Reading& asked = {}) const {
     Drive drive;
     for (int k = 0; k < 12; ++k) {
       add_cloud(drive, at(k));
@@ -125,7 +129,7 @@ class BagClocks : public BagPoses {
       add_tf(drive, {at(k), "map", "lidar", pose_at_x(k)});
       drive.back().recorded_ns += ns(poses_late_s);
     }
-    return open(drive).recording().doubts;
+    return open(drive, asked).recording().doubts;
   }
 };
 
@@ -146,6 +150,32 @@ TEST_P(BagClocks, AreNotDoubtedWhereMessagesComeLateOrPosesAreDatedAhead) {
     EXPECT_THAT(doubts(late_s, 0.5), Not(clocks)) << late_s;
   }
   EXPECT_THAT(doubts(0.0, 0.0), Not(clocks)) << "a converter takes the stamps for both";
+}
+
+/// Scans that are stamped since the sensor began to run, poses since 1970.
+TEST_P(BagClocks, ThatDifferByAConstantAreMendedByTheOffsetThatIsPrinted) {
+  Drive drive;
+  for (int k = 0; k < 12; ++k) {
+    add_cloud(drive, at(k) - kDrive_ns + 600 * kStep_ns);
+    drive.back().recorded_ns = at(k);
+    add_tf(drive, {at(k), "map", "lidar", pose_at_x(k)});
+  }
+  EXPECT_THAT(error_of(drive), HasSubstr("pose_offset_s -1699999940 reads"));
+  const BagSequence mended = open(drive, {.pose_offset_s = -1699999940.0});
+  EXPECT_EQ(mended.size(), 12U);
+  EXPECT_EQ(xs_of(mended).back(), 11.0);
+  EXPECT_THAT(mended.recording().doubts, Not(Contains(HasSubstr("clock"))));
+
+  // Stamps that stand still are mended by no offset.
+  for (DriveMessage& message : drive) {
+    if (message.topic != "/points") continue;
+    Drive stopped;
+    add_cloud(stopped, 0);
+    stopped.back().recorded_ns = message.recorded_ns;
+    message = stopped.back();
+  }
+  EXPECT_THAT(error_of(drive), AllOf(HasSubstr("the times of recording would fit"),
+                                     Not(HasSubstr("pose_offset_s"))));
 }
 
 INSTANTIATE_TEST_SUITE_P(OfEveryKind, BagClocks,

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <functional>
 
@@ -39,6 +40,16 @@ OddCloud odd_cloud(std::uint32_t height, std::uint32_t width, std::uint32_t padd
   return cloud;
 }
 
+/// The same with the bytes of each number the other way round.
+OddCloud big_endian(OddCloud cloud) {
+  cloud.head.big_endian = true;
+  for (std::size_t at = 0; at + 4 <= cloud.records.size(); at += 4) {
+    std::reverse(cloud.records.begin() + static_cast<std::ptrdiff_t>(at),
+                 cloud.records.begin() + static_cast<std::ptrdiff_t>(at + 4));
+  }
+  return cloud;
+}
+
 void expect_read(const OddCloud& cloud, const std::string& what) {
   for (const auto encoding :
        {MessageEncoding::kRos1, MessageEncoding::kCdr, MessageEncoding::kCdrBigEndian}) {
@@ -70,6 +81,16 @@ TEST(CloudSizes, AreThoseOfThePointsWhereTheRowStepDoesNotFit) {
       expect_read(cloud, "followed by other bytes");
     }
   }
+}
+
+TEST(CloudBytes, AreReadInTheOrderThatTheHeadNames) {
+  const OddCloud cloud = big_endian(odd_cloud(2, 3, 0));
+  EXPECT_NE(cloud.records, odd_cloud(2, 3, 0).records);
+  expect_read(cloud, "big endian");
+  const auto times = parse_cloud(format_cloud(cloud.head, cloud.records, MessageEncoding::kRos1),
+                                 "f", {kPointCloud2, MessageEncoding::kRos1}, true)
+                         .times;
+  EXPECT_EQ(times, std::vector<double>(6, 7.0));
 }
 
 TEST(CloudSizes, OfNothingAreThoseOfTheBytes) {

@@ -162,6 +162,10 @@ TEST(Palette, IsThatOfThePage) {
   EXPECT_EQ(palette(false).outcomes.size(), OutcomeCounts{}.size());
   EXPECT_EQ(palette(false).reasons.size(), kReasonCount);
   EXPECT_EQ(palette(false).reasons.at(4).name, "feet");
+  ASSERT_EQ(palette(false).scenes.size(), kErrorSceneNames.size());
+  for (std::size_t i = 1; i < kErrorSceneNames.size(); ++i) {
+    EXPECT_EQ(palette(true).scenes[i].name, kErrorSceneNames.at(i));
+  }
 }
 
 /// One point per outcome, ahead of the sensor and apart from each other.
@@ -197,6 +201,19 @@ TEST(ScanPicture, DrawsEachPointInTheColourOfItsReasonWhenAskedTo) {
   for (const std::size_t i : {0U, 1U, 2U, 3U}) {
     EXPECT_EQ(picture.at(500, 500 - 25 * (4 + i)), colours.reasons[i + 1].colour) << i;
   }
+}
+
+TEST(ScanPicture, DrawsWrongPointsInTheColoursOfTheirScenesWhenAskedTo) {
+  ScanPictureOptions options;
+  options.range_m = 20.0;
+  for (const int scene : {0, 5, 6, 0, 0, 0}) {
+    options.scenes.push_back(static_cast<ErrorScene>(scene));
+  }
+  const Picture picture = scan_picture(row_of_outcomes(), options);
+  const Palette colours = palette(false);
+  EXPECT_EQ(picture.at(500, 500 - 25 * 5), colours.scenes[5].colour);
+  EXPECT_EQ(picture.at(500, 500 - 25 * 6), colours.scenes[6].colour);
+  EXPECT_EQ(pixels_of(picture, colours.outcomes[0].colour), 0U);
 }
 
 TEST(ScanView, PutsWhatIsAheadAboveAndWhatIsLeftToTheLeftFromAboveAndFromBehind) {

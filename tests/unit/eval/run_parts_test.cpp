@@ -55,6 +55,7 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
                         .pose_frame = PoseFrame::kCamera,
                         .pose_direction = PoseDirection::kMapFromSensor,
                         .max_pose_gap_s = 1.5,
+                        .pose_offset_s = -0.25,
                         .topic = "/os1",
                         .map_frame = "map",
                         .pose_topic = "/gps",
@@ -71,6 +72,7 @@ TEST(ReadingJson, KeepsWhatTheUserTold) {
   EXPECT_EQ(read.pose_frame, told.pose_frame);
   EXPECT_EQ(read.pose_direction, told.pose_direction);
   EXPECT_EQ(read.max_pose_gap_s, told.max_pose_gap_s);
+  EXPECT_EQ(read.pose_offset_s, told.pose_offset_s);
   EXPECT_EQ(read.topic, told.topic);
   EXPECT_EQ(read.map_frame, told.map_frame);
   EXPECT_EQ(read.pose_topic, told.pose_topic);
