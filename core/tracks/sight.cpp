@@ -122,12 +122,14 @@ SightImage::SightImage(std::span<const Point> points, double min_range_m,
                        const RayOrigins& origins) {
   if (origins.empty()) views_.push_back({Eigen::Vector3f::Zero(), {points, min_range_m}});
   std::vector<Point> own;
-  for (std::size_t sensor = 0; sensor < origins.positions_m.size(); ++sensor) {
-    const Eigen::Vector3f at = origins.positions_m[sensor].cast<float>();
+  const std::vector<Eigen::Vector3d>& places = origins.positions_m;
+  for (auto place = places.begin(); place != places.end(); ++place) {
+    if (std::find(places.begin(), place, *place) != place) continue;  // it has its view
+    const Eigen::Vector3f at = place->cast<float>();
     own.clear();
     for (std::size_t i = 0; i < points.size(); ++i) {
       const Point& p = points[i];
-      if (origins.of_point[i] != sensor) continue;
+      if (origins.at(i) != *place) continue;
       own.push_back({p.x - at.x(), p.y - at.y(), p.z - at.z(), p.intensity});
     }
     views_.push_back({at, {own, min_range_m}});

@@ -13,7 +13,7 @@ namespace {
 class EveryMethodOnSmallWorlds : public testing::TestWithParam<std::string> {
  protected:
   /// Limits every method has suit the small world; all else is as by default.
-  std::unique_ptr<Method> make(const RunContext& context) const {
+  std::unique_ptr<Method> make(const RunContext& context, double track_window_s = 0) const {
     const MethodKind* kind = find_method(GetParam());
     Settings settings = kind->defaults;
     settings.set("min_range_m", 0.3);
@@ -24,6 +24,7 @@ class EveryMethodOnSmallWorlds : public testing::TestWithParam<std::string> {
     for (const char* name : {"reference_offset_scans", "window_scans"}) {
       if (settings.find(name) != nullptr) settings.set(name, 3);
     }
+    if (track_window_s > 0) settings.set("track_window_s", track_window_s);
     return kind->make(settings, context);
   }
 };
@@ -53,22 +54,27 @@ TEST_P(EveryMethodOnSmallWorlds, GivesTheSameLabelsScoresAndReasonsForAnyNumberO
 }
 
 TEST_P(EveryMethodOnSmallWorlds, GivesARigWithEqualOriginsTheBitsOfOneCloudOrRefusesIt) {
-  for (SmallWorld& world : small_worlds()) {
-    const auto expected = results_of(*make({.scores = true}), world);
-    for (const std::vector<Point>& scan : world.scans) {
-      RayOrigins& origins = world.origins.emplace_back();
+  const MethodKind* kind = find_method(GetParam());
+  for (const SmallWorld& world : small_worlds()) {
+    SmallWorld rig = world;
+    for (const std::vector<Point>& scan : rig.scans) {
+      RayOrigins& origins = rig.origins.emplace_back();
       origins.positions_m.assign(2, Eigen::Vector3d::Zero());
       for (std::size_t i = 0; i < scan.size(); ++i) origins.of_point.push_back(i / 7 % 2);
     }
-    if (!find_method(GetParam())->takes_origins) {
-      EXPECT_THROW(results_of(*make({}), world), std::invalid_argument);
+    if (!kind->takes_origins) {
+      EXPECT_THROW(results_of(*make({}), rig), std::invalid_argument);
       continue;
     }
-    const auto results = results_of(*make({.threads = 3, .scores = true}), world);
-    ASSERT_EQ(results.size(), expected.size());
-    for (std::size_t k = 0; k < results.size(); ++k) {
-      ASSERT_EQ(results[k].labels, expected[k].labels) << "scan " << k;
-      ASSERT_EQ(results[k].scores, expected[k].scores) << "scan " << k;
+    const bool has_tracks = kind->defaults.find("track_window_s") != nullptr;
+    for (const double window_s : {0.0, has_tracks ? 1.0 : 0.0}) {
+      const auto expected = results_of(*make({.scores = true}, window_s), world);
+      const auto results = results_of(*make({.threads = 3, .scores = true}, window_s), rig);
+      ASSERT_EQ(results.size(), expected.size());
+      for (std::size_t k = 0; k < results.size(); ++k) {
+        ASSERT_EQ(results[k].labels, expected[k].labels) << "scan " << k;
+        ASSERT_EQ(results[k].scores, expected[k].scores) << "scan " << k;
+      }
     }
   }
 }

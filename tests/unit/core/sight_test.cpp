@@ -72,6 +72,14 @@ TEST(SightImage, LooksFromEachPlaceThatRaysStartAt) {
   EXPECT_EQ(rig.at({8, -0.8F, 0}), Sight::kHidden);
 }
 
+TEST(SightImage, LooksFromTwoOriginsAtOnePlaceAsFromOne) {
+  // What one of them alone sees through, both together hit: a surface may be between.
+  const std::vector<Point> points = {{3, 0, 0, 0}, {10, 0, 0, 0}};
+  const SightImage rig(points, 0.5, {{{0, 0, 0}, {0, 0, 0}}, {0, 1}});
+  EXPECT_EQ(SightImage(points, 0.5).at({5, 0, 0}), Sight::kHit);
+  EXPECT_EQ(rig.at({5, 0, 0}), Sight::kHit);
+}
+
 TEST(Looks, CountWhatWasSeenThroughAndHitBeforeAndAfter) {
   const SightImage image(wall_of_points(), 0.5);
   Look before{&image, Eigen::Isometry3f::Identity(), true}, after = before, nearer = before;

@@ -182,6 +182,18 @@ TEST_F(Rig, TakesNoScanTwice) {
   EXPECT_EQ(left_out_of(-0.05), 1U);
 }
 
+TEST_F(Rig, GivesAScanBetweenTwoToTheNearer) {
+  const RigDrive drive{.scans = 6};
+  drive.write_folders(folder_, "rig");
+  folder_.write("rig/a/times.txt", "5.00\n5.08\n5.20\n5.30\n5.40\n5.50\n");
+  folder_.write("rig/b/times.txt", "5.041\n5.20\n5.30\n5.40\n5.50\n5.60\n");
+  const Dataset data = opened({.lidars = "a,b"}, "rig");
+  const Sequence& rig = *data.sequences.front();
+  EXPECT_EQ(rig.point_count(0), drive.scan(0, 0).labels.size());
+  EXPECT_EQ(rig.point_count(1), drive.scan(0, 1).labels.size() + drive.scan(1, 0).labels.size());
+  EXPECT_THAT(rig.remarks(), Contains("b: 1 of 6 scans have no scan of it within 50 ms"));
+}
+
 TEST_F(Rig, RefusesLidarsWithoutMountOrWithAnotherClock) {
   write_bag({.scans = 3}, 1);
   EXPECT_THAT(
