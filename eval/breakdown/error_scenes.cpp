@@ -207,7 +207,8 @@ bool is_of_vehicle_size(const std::vector<Eigen::Vector3d>& thing_m) {
   const Eigen::Vector3d size_m = smallest_box(thing_m).size_m;
   const double length_m = std::max(size_m.x(), size_m.y());
   const double width_m = std::min(size_m.x(), size_m.y());
-  return length_m > 1.2 && length_m < 7.0 && width_m < 2.8 && size_m.z() > 0.5 && size_m.z() < 3.0;
+  return length_m > 1.2 && length_m < 7.0 && width_m > 0.2 && width_m < 2.8 && size_m.z() > 0.5 &&
+         size_m.z() < 3.0;
 }
 
 bool is_moving(PointOutcome outcome) {
@@ -254,7 +255,7 @@ class Surroundings {
       returns_m.push_back(at_m_[i]);
       around_.add(at_m_[i]);
       lowest_.add(at_m_[i]);
-      if (is_moving(scan.outcomes[i])) moving_.add(at_m_[i]);
+      (is_moving(scan.outcomes[i]) ? moving_ : standing_).add(at_m_[i]);
     }
     if (earlier != nullptr) {
       before_.emplace(*earlier);
@@ -273,10 +274,11 @@ class Surroundings {
     if (by_class != ErrorScene::kNone) return by_class;
     if (lowest_.height_m(at_m) <= kGround_m) return ErrorScene::kGround;
     if (is_on_vehicle_[point]) return ErrorScene::kParked;
-    const auto around = spread_of(around_.around(at_m, kSameSurface_m));
-    if (around && around->variances_m2[0] > kScattered * around->variances_m2[2]) {
+    const auto standing = spread_of(standing_.around(at_m, kSameSurface_m));
+    if (standing && standing->variances_m2[0] > kScattered * standing->variances_m2[2]) {
       return ErrorScene::kVegetation;
     }
+    const auto around = spread_of(around_.around(at_m, kSameSurface_m));
     const bool is_thin = !around || around->variances_m2[1] < kInRow * around->variances_m2[2];
     const bool is_edge = is_thin || image_.jumps_at(position_of(scan_.frame.points[point]));
     return is_edge ? ErrorScene::kEdge : ErrorScene::kElse;
@@ -307,7 +309,7 @@ class Surroundings {
   std::optional<RangeImage> before_;
   bool poses_off_ = false;
   std::vector<Eigen::Vector3d> at_m_;
-  PlacedPoints around_{kSameSurface_m}, moving_{kNearMoving_m};
+  PlacedPoints around_{kSameSurface_m}, standing_{kSameSurface_m}, moving_{kNearMoving_m};
   LowestPoints lowest_;
   std::vector<bool> is_on_vehicle_;
 };

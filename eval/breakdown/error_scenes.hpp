@@ -17,7 +17,7 @@ enum class ErrorScene : std::uint8_t {
   kPose,        ///< the poses put surfaces of this scan and of a second before apart
   kGround,      ///< at most 0.3 m above the lowest points around
   kParked,      ///< on a static thing of a vehicle's size that stands alone
-  kVegetation,  ///< in points that scatter in all directions
+  kVegetation,  ///< the static points around scatter in all directions
   kEdge,        ///< before or behind a jump of range, or on what is as thin as the beams are apart
   kElse
 };

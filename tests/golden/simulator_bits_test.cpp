@@ -19,6 +19,7 @@ TEST(SimulatedBits, StayTheSameOnEveryMachineAndWithEveryCompiler) {
   EXPECT_EQ(hash_of(built_in_simulator("mall", "os1-64", 1), 25), 1260565861572280818U);
   EXPECT_EQ(hash_of(built_in_simulator("campus", "avia", 2), 40), 15697715747684299040U);
   EXPECT_EQ(hash_of(built_in_simulator("street", "os2-128", 3), 31), 11316349133035334405U);
+  EXPECT_EQ(hash_of(built_in_simulator("road", "hdl-64e", 6), 20), 6071772777964803080U);
   EXPECT_EQ(hash_of(built_in_simulator("street", "aeva", 5), 100), 10801578845447865568U);
   EXPECT_EQ(hash_of(built_in_simulator("highway", "hdl-64e", 4), 12), 18396837728063777012U);
 }

@@ -11,6 +11,7 @@
 
 #include "datasets/sequence/portable_math.hpp"
 #include "datasets/simulator/scene.hpp"
+#include "datasets/simulator/trajectory.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
@@ -65,13 +66,14 @@ TEST(Simulator, DependsNeitherOnTheOrderOfScansNorOnThreads) {
 class EveryScene : public testing::TestWithParam<std::string_view> {};
 
 INSTANTIATE_TEST_SUITE_P(BuiltIn, EveryScene,
-                         testing::Values("mall", "campus", "street", "highway", "room"),
+                         testing::Values("mall", "campus", "street", "road", "highway", "room"),
                          [](const auto& name) { return std::string(name.param); });
 
 TEST(BuiltInScenes, AreTheOnesTheseTestsCover) {
   std::vector<std::string_view> names;
   for (const SceneSummary& scene : built_in_scenes()) names.push_back(scene.name);
-  EXPECT_EQ(names, (std::vector<std::string_view>{"mall", "campus", "street", "highway", "room"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string_view>{"mall", "campus", "street", "road", "highway", "room"}));
   EXPECT_THROW(built_in_scene("mal"), UsageError);
 }
 
@@ -89,7 +91,9 @@ TEST_P(EveryScene, SeesMostlyStaticThingsAround) {
 }
 
 TEST_P(EveryScene, PutsEveryPointOnTheSurfaceThatItClaims) {
-  const Simulator simulator = built_in_simulator(GetParam(), "hdl-64e", 6);
+  Scene scene = built_in_scene(GetParam());
+  scene.beam_width_rad.reset();  // returns between two surfaces are on neither
+  const Simulator simulator(scene, sensor_model(SensorKind::kHdl64e), 6);
   const double noise_m = simulator.sensor().range_noise_m * kNormalBound + 1e-4;
   for (const std::size_t scan_index : {0U, 37U}) {
     const SimulatedScan scan = simulator.scan(scan_index);
@@ -263,6 +267,38 @@ TEST(Simulator, ReturnsExactRangesWithoutNoise) {
     ASSERT_NEAR(scan.points[i].z, -0.8, 1e-6);
   }
   EXPECT_GT(on_ground, 1000U);
+}
+
+TEST(RoadScene, LetsPartOfTheRaysThroughTheWindowsOfParkedCars) {
+  const Simulator simulator = built_in_simulator("road", "hdl-64e", 1);
+  const auto& structures = simulator.scene().structures;
+  std::size_t on_panes = 0, on_seats = 0;
+  for (const std::uint32_t owner : simulator.scan(10).owners) {
+    if (owner == 0 || owner > structures.size()) continue;
+    const Structure& structure = structures[owner - 1];
+    on_panes += structure.let_through ? 1U : 0U;
+    on_seats += structure.size_m == std::array{0.15, 0.45, 0.5} ? 1U : 0U;
+  }
+  EXPECT_GT(on_panes, 50U);
+  EXPECT_GT(on_seats, 10U);
+}
+
+TEST(RoadScene, HasNobodyWhoGoesThroughWhatStands) {
+  const Scene scene = built_in_scene("road");
+  constexpr double kClear_m = 0.15;
+  for (int tenth = 0; tenth < 300; ++tenth) {
+    for (const Mover& mover : scene.movers) {
+      const Eigen::Vector2d at_m = route_state(mover.route, 0.1 * tenth).position_m;
+      for (const Structure& structure : scene.structures) {
+        const bool is_in_the_way =
+            structure.center_m[2] - structure.size_m[2] / 2.0 < 1.5 && structure.size_m[2] > 0.15;
+        const bool is_hit =
+            std::abs(at_m.x() - structure.center_m[0]) < structure.size_m[0] / 2.0 + kClear_m &&
+            std::abs(at_m.y() - structure.center_m[1]) < structure.size_m[1] / 2.0 + kClear_m;
+        ASSERT_FALSE(is_in_the_way && is_hit) << at_m.transpose() << " at " << tenth;
+      }
+    }
+  }
 }
 
 }  // namespace
