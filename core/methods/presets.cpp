@@ -51,6 +51,7 @@ std::span<const MethodPreset> method_presets() {
       {"kitti-raw", settings(0.25, 1.5, 50.0), "ours, the authors publish none: as helimos"},
       {"kitti-tracking", settings(0.25, 1.5, 50.0), "ours, the authors publish none: as helimos"},
       {"recording", settings(0.25, 1.5, 50.0), "ours, for recordings of any sensor: as helimos"},
+      {"mid-360", {{"voxel_size_m", 0.15}}, "ours, docs/history/studies.md: thin scans all round"},
       {"best", {}, "ours, docs/history/plus/README.md", "hmm-mos-plus"},
       {"offline",
        {{"delay_scans", 0}, {"track_window_s", 60.0}},

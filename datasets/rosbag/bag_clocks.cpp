@@ -111,11 +111,14 @@ std::optional<ClockDoubt> doubt_about_clocks(const BagReader& bag,
   }
   const std::string what = fmt::format(
       "the clock of the scans is {:+.3f} s from that of the poses: scans are stamped {} and were "
-      "recorded {}, poses are stamped {}; the times of recording would fit",
+      "recorded {}, poses are stamped {}; the times of recording would fit, "
+      "to about the time that a scan takes",
       apart_s, range_of(scans, &MessageTimes::stamp_ns),
       range_of(scans, &MessageTimes::recorded_ns), range_of(poses, &MessageTimes::stamp_ns));
   ClockDoubt doubt{what, {}};
-  if (run_alike(scans)) doubt.offset_s = mending_offset_s(asked.pose_offset_s, -apart_s);
+  // A scan is recorded after its last point.
+  const double late_s = ahead_s(poses) - ahead_s(scans, true);
+  if (run_alike(scans)) doubt.offset_s = mending_offset_s(asked.pose_offset_s, late_s);
   return doubt;
 }
 

@@ -188,14 +188,16 @@ std::vector<Sheet> presets_sheets() {
                         "is left open from the data set's first one; of a method, it is run by no "
                         "other."}};
   for (const Preset& preset : presets()) {
+    const auto value = [&](std::string_view setting) {
+      const auto found = std::ranges::find(preset.values, setting, &PresetValue::setting);
+      return found == preset.values.end() ? "" : to_string(found->value);
+    };
     if (!preset.kind) {
-      sheet.rows.push_back({std::string(preset.name), "any", "", "as the data set's", "", "",
-                            fmt::format("{} by {}", preset.source, preset.method)});
+      const std::string method = preset.method.empty() ? "" : fmt::format(" by {}", preset.method);
+      sheet.rows.push_back({std::string(preset.name), "any", value(common_settings::kVoxelSize_m),
+                            "as the data set's", "", "", std::string(preset.source) + method});
       continue;
     }
-    const auto value = [&](std::string_view setting) {
-      return to_string(std::ranges::find(preset.values, setting, &PresetValue::setting)->value);
-    };
     sheet.rows.push_back({std::string(preset.name), std::string(to_string(*preset.kind)),
                           value(common_settings::kVoxelSize_m),
                           fmt::format("{} to {}", value(common_settings::kMinRange_m),

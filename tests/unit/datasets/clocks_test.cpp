@@ -178,6 +178,22 @@ TEST_P(BagClocks, ThatDifferByAConstantAreMendedByTheOffsetThatIsPrinted) {
                                      Not(HasSubstr("pose_offset_s"))));
 }
 
+TEST_P(BagClocks, OfScansWithTimesOfPointsAreComparedByTheirLastPoints) {
+  std::vector<std::uint32_t> times_ns;
+  for (std::uint32_t i = 0; i < 11; ++i) times_ns.push_back(i * 10'000'000);
+  const std::vector<Point> points(times_ns.size(), {1, 0, 0, 1});
+  Drive drive;
+  for (int k = 0; k < 12; ++k) {
+    const std::int64_t stamp_ns = at(k) - kDrive_ns + 600 * kStep_ns;
+    drive.push_back(
+        {"/points", std::string(kPointCloud2), at(k + 1), [=](MessageEncoding encoding) {
+           return timed_cloud(stamp_ns, points, times_ns, encoding);
+         }});
+    add_tf(drive, {at(k), "map", "lidar", pose_at_x(k)});
+  }
+  EXPECT_THAT(error_of(drive), HasSubstr("pose_offset_s -1699999940 reads"));
+}
+
 INSTANTIATE_TEST_SUITE_P(OfEveryKind, BagClocks,
                          testing::Values(DriveBag::kRos1, DriveBag::kMcap, DriveBag::kDb3));
 

@@ -129,6 +129,12 @@ TEST(Presets, HaveThePapersSettingsAndAKnownProtocol) {
   EXPECT_EQ(value_of("sipailou", "min_range_m"), 3.0);
   EXPECT_EQ(value_of("helimos", "voxel_size_m"), 0.25);
   EXPECT_EQ(value_of("helimos-delayed", "delay_scans"), 10);
+  const Preset thin = preset_for(preset_named("mid-360"), DatasetKind::kRecording);
+  for (const char* method : {"hmm-mos", "hmm-mos-plus"}) {
+    const Settings settings = settings_of(thin, *find_method(method));
+    EXPECT_EQ(settings.number("voxel_size_m"), 0.15) << method;
+    EXPECT_EQ(settings.number("max_range_m"), 50.0) << method;
+  }
   EXPECT_EQ(default_preset(DatasetKind::kHelimos).name, "helimos");
   EXPECT_EQ(default_preset(DatasetKind::kDoals).name, "doals-20m");
 }
