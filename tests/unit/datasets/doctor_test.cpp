@@ -638,10 +638,10 @@ TEST(Checks, CompareFactsThatAreMeasured) {
   }
   // What is there only where it is found.
   EXPECT_THAT(unknown, testing::UnorderedElementsAre(
-                           "turned_scans", "equal_poses", "missing_turn", "missing_turn",
-                           "lost_rows_repeated", "lost_rows", "better_gain", "explained_share",
-                           "scans_without_moving", "scans_without_moving", "scans_left_out",
-                           "scans_too_many", "points_unlike_published"));
+                           "turned_scans", "clock_off_s", "equal_poses", "missing_turn",
+                           "missing_turn", "lost_rows_repeated", "lost_rows", "better_gain",
+                           "explained_share", "scans_without_moving", "scans_without_moving",
+                           "scans_left_out", "scans_too_many", "points_unlike_published"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Faults, Doctor, testing::ValuesIn(faults()),
