@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 
 namespace mosbench {
 namespace {
+
+namespace fs = std::filesystem;
 
 using nlohmann::ordered_json;
 using testing::AllOf;
