@@ -14,6 +14,7 @@
 #include "eval/engine/run_execute.hpp"
 #include "eval/result/result.hpp"
 #include "eval/result/tell.hpp"
+#include "eval/truth/review.hpp"
 #include "eval/truth/truth_labels.hpp"
 
 namespace mosbench {
@@ -25,24 +26,10 @@ struct TruthFlags : JobWords {
   unsigned threads = hardware_threads();
 };
 
-/// A decision on less than 0.05 % IoU is not worth the seconds.
-constexpr double kWorthALook = 5e-4;
-constexpr double kPerDecision_s = 8;
 constexpr std::size_t kMostRows = 20;
 
-/// "31 decisions left, about 4 min 08 s".
-std::string left_text(const std::vector<TruthTrack>& left) {
-  const auto worthy = static_cast<std::size_t>(std::ranges::count_if(
-      left, [](const TruthTrack& track) { return track.worth >= kWorthALook; }));
-  const double seconds = kPerDecision_s * static_cast<double>(worthy);
-  return fmt::format("{} left, about {}", counted(worthy, "decision"), duration_text(seconds));
-}
-
 /// The tracks that are to be decided next, and how many.
-Answer status_answer(const TruthFlags& flags, const std::filesystem::path& folder) {
-  if (flags.out && flags.action == "status") {
-    throw UsageError("--out: is nothing for truth status, expected it left out");
-  }
+Answer status_answer(const std::filesystem::path& folder) {
   const TruthFolder truth = open_truth(folder);
   const std::vector<TruthTrack> left = truth.undecided();
   std::size_t scans = 0;
@@ -66,6 +53,12 @@ Answer status_answer(const TruthFlags& flags, const std::filesystem::path& folde
   if (left.size() > kMostRows) {
     sheet.notes.push_back(fmt::format("{} of {} undecided tracks are shown, the most worthy first",
                                       kMostRows, left.size()));
+  }
+  for (const TruthTrack* track : truth.contradicted()) {
+    sheet.notes.push_back(
+        fmt::format("{} is decided {}, but {:.0f} % of the looks at it say {}: look again",
+                    track->id(), track->moves ? "static" : "moving", 100 * (1 - track->doubt),
+                    track->moves ? "moving" : "static"));
   }
   return {.standing = standing_of(ResultSet{folder, truth.runs}), .sheets = {sheet}};
 }
@@ -96,7 +89,7 @@ Answer propose(TruthFlags flags) {
     runs.back().file = outcome.folder / "result.json";
   }
   commit_file(tracks_file(plan.out), format_tracks(list_tracks(runs)));
-  return status_answer(flags, plan.out);
+  return status_answer(plan.out);
 }
 
 Answer write_answer(const TruthFlags& flags) {
@@ -127,8 +120,9 @@ Answer write_answer(const TruthFlags& flags) {
 
 Answer truth_answer(const TruthFlags& flags, const CLI::App& command) {
   if (flags.action == "propose") return propose(flags);
-  constexpr std::array kOfTruth = {"--out", "--data", "--as", "--json"};
+  constexpr std::array kOfTruth = {"--data", "--as", "--json"};
   const std::string given = given_words(command, [&](const CLI::Option& option) {
+    if (flags.action == "write" && option.check_lname("out")) return false;
     return option.nonpositional() &&
            std::ranges::find(kOfTruth, option.get_name()) == kOfTruth.end();
   });
@@ -136,7 +130,12 @@ Answer truth_answer(const TruthFlags& flags, const CLI::App& command) {
     throw UsageError(fmt::format("{}: is nothing for truth {}, expected it left out",
                                  given.substr(1), flags.action));
   }
-  return flags.action == "write" ? write_answer(flags) : status_answer(flags, flags.input);
+  if (flags.action == "write") return write_answer(flags);
+  if (flags.action == "status") return status_answer(flags.input);
+  serve_review(flags.input, flags.data, [](const std::string& address) {
+    tell(fmt::format("open {} in a browser; Ctrl-C ends, decisions are stored at once", address));
+  });
+  return {};
 }
 
 }  // namespace
@@ -144,13 +143,15 @@ Answer truth_answer(const TruthFlags& flags, const CLI::App& command) {
 CommandRun add_truth(CLI::App& command) {
   auto flags = std::make_shared<TruthFlags>();
   add(command, "ACTION", flags->action,
-      "propose tracks of DRIVE, write labels of TRUTH, or tell the status of TRUTH")
+      "propose tracks of DRIVE; review them in a browser, tell the status of TRUTH, or write its "
+      "labels")
       ->required()
-      ->check(CLI::IsMember({"propose", "write", "status"}));
+      ->check(CLI::IsMember({"propose", "review", "status", "write"}));
   add_dataset_flags(command, *flags, "DRIVE");
   add(command, "-o,--out DIR", flags->out,
       "Folder to write: of propose TRUTH, of write <sequence>/labels");
-  add(command, "--data DIR", flags->data, "Of write: folder of the drive, where it was moved");
+  add(command, "--data DIR", flags->data,
+      "Of review and write: folder of the drive, where it was moved");
   add_odometry_flag(command, flags->odometry, "Find the poses by it instead of reading them");
   add_threads_flag(command, flags->threads);
   return [flags, &command] { return truth_answer(*flags, command); };

@@ -1,11 +1,15 @@
 #include "eval/truth/truth_folder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 #include <set>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
+#include "eval/result/tell.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -18,6 +22,34 @@ std::vector<TruthTrack> TruthFolder::undecided() const {
   std::ranges::copy_if(tracks, std::back_inserter(left),
                        [&](const TruthTrack& track) { return !decided.contains(track.id()); });
   return left;
+}
+
+std::vector<const TruthTrack*> TruthFolder::contradicted() const {
+  std::vector<const TruthTrack*> found;
+  for (const TruthTrack& track : tracks) {
+    const auto said = decided.find(track.id());
+    const Decided against = track.moves ? Decided::kStatic : Decided::kMoving;
+    if (said != decided.end() && said->second == against && track.doubt < 0.2) {
+      found.push_back(&track);
+    }
+  }
+  return found;
+}
+
+void TruthFolder::decide(const Decision& decision) {
+  decisions = read_decisions(path);
+  decisions.push_back(decision);
+  commit_file(decisions_file(path), format_decisions(decisions));
+  decided = last_of_each(decisions);
+}
+
+std::string left_text(const std::vector<TruthTrack>& undecided) {
+  // Less than 0.05 % IoU is not worth the seconds.
+  constexpr double kWorthALook = 5e-4, kPerDecision_s = 8;
+  const auto worthy = static_cast<std::size_t>(std::ranges::count_if(
+      undecided, [](const TruthTrack& track) { return track.worth >= kWorthALook; }));
+  return fmt::format("{} left, about {}", counted(worthy, "decision"),
+                     duration_text(kPerDecision_s * static_cast<double>(worthy)));
 }
 
 std::vector<Decision> read_decisions(const fs::path& folder) {

@@ -20,6 +20,10 @@ struct TruthFolder {
   std::map<std::string, Decided> decided;  ///< by track
 
   std::vector<TruthTrack> undecided() const;
+  /// The tracks that are decided against more than 0.8 of the looks: a wrong key, most likely.
+  std::vector<const TruthTrack*> contradicted() const;
+  /// Stores a decision behind those in the file by now. It is on the disk then. Throws DataError.
+  void decide(const Decision& decision);
 };
 
 std::filesystem::path tracks_file(const std::filesystem::path& folder);
@@ -27,6 +31,9 @@ std::filesystem::path decisions_file(const std::filesystem::path& folder);
 
 /// Returns the decisions in a folder, none without their file. Throws DataError.
 std::vector<Decision> read_decisions(const std::filesystem::path& folder);
+
+/// "31 decisions left, about 4 min 08 s", of the tracks that are worth one.
+std::string left_text(const std::vector<TruthTrack>& undecided);
 
 /// Opens what `mosbench truth propose` wrote. Throws DataError where the tracks are not those of
 /// the runs beside them, and for decisions on other tracks.

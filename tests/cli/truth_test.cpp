@@ -1,7 +1,12 @@
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/label_file.hpp"
@@ -118,6 +123,23 @@ TEST_F(Truth, HeedsDecisionsAndSaysWhereLabelsComeFrom) {
   EXPECT_EQ(note.at("decided").at(0).at("decided"), "unsure");
 }
 
+TEST_F(Truth, TellsDecisionsAgainstTheLooks) {
+  auto list = nlohmann::ordered_json::parse(read_file(folder_ / "truth/tracks.json"));
+  const std::string track = box();
+  for (auto& told : list["tracks"]) told["doubt"] = 0.25;
+  const auto status = [&] {
+    write_file_atomic(folder_ / "truth/tracks.json", list.dump());
+    return cli::run({"truth", "status", truth()}).out;
+  };
+  const std::string said = track + " is decided static, but 90 % of the looks at it say moving";
+  decide(track, "static");
+  EXPECT_THAT(status(), testing::Not(HasSubstr("look again")));
+  for (auto& told : list["tracks"]) told["doubt"] = 0.1;
+  EXPECT_THAT(status(), HasSubstr(said));
+  decide(track, "moving");
+  EXPECT_THAT(status(), testing::Not(HasSubstr("look again")));
+}
+
 TEST_F(Truth, IsTruthOfTheDriveForRunAndScore) {
   decide(box(), "moving");
   ASSERT_EQ(write().exit_code, 0);
@@ -180,6 +202,109 @@ TEST_F(Truth, NamesWhatIsWrong) {
   EXPECT_THAT(flag.err, HasSubstr("--scans 1:2: is nothing for truth status"));
   EXPECT_EQ(cli::run({"truth", "propose", room()}).exit_code, 2);
   EXPECT_EQ(cli::run({"truth", "write", truth()}).exit_code, 2);
+}
+
+/// The server of a page, until it is killed.
+class ReviewServer {
+ public:
+  ReviewServer(const std::string& truth, const TempFolder& folder)
+      : child_(cli::start({"truth", "review", truth}, folder.path())) {
+    const std::string before = "open http://127.0.0.1:";
+    for (int tries = 0; tries < 600 && port_ == 0; ++tries) {
+      usleep(50'000);
+      const std::string told = read_file(folder / "stderr.txt");
+      const std::size_t at = told.find(before), token = told.find("/?token=");
+      lacks_library_ = told.find("lacks cpp-httplib") != told.npos;
+      if (lacks_library_) return;
+      if (at == told.npos || token == told.npos || told.find(' ', token) == told.npos) continue;
+      port_ = static_cast<std::uint16_t>(std::stoi(told.substr(at + before.size())));
+      token_ = told.substr(token + 8, told.find(' ', token) - token - 8);
+    }
+  }
+  ~ReviewServer() { kill_now(); }
+  void kill_now() {
+    if (child_ <= 0) return;
+    kill(child_, SIGKILL);
+    cli::wait_for(child_);
+    child_ = 0;
+  }
+  bool lacks_library() const { return lacks_library_; }
+  const std::string& token() const { return token_; }
+
+  /// Returns the answer to a request, with its head.
+  std::string ask(const std::string& method, const std::string& target) const {
+    const int connection = socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(port_);
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    std::string answer;
+    if (connect(connection, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0) {
+      const std::string request = method + ' ' + target +
+                                  " HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n"
+                                  "Connection: close\r\n\r\n";
+      send(connection, request.data(), request.size(), 0);
+      char bytes[4096];
+      for (ssize_t got = 0; (got = recv(connection, bytes, sizeof(bytes), 0)) > 0;) {
+        answer.append(bytes, static_cast<std::size_t>(got));
+      }
+    }
+    close(connection);
+    return answer;
+  }
+  std::string decide(const std::string& track, const std::string& decided) const {
+    return ask("POST", "/decide?track=" + track + "&decided=" + decided + "&token=" + token_);
+  }
+  nlohmann::json get(const std::string& target) const {
+    const std::string answer = ask("GET", target + "token=" + token_);
+    return nlohmann::json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
+  }
+
+ private:
+  pid_t child_;
+  std::uint16_t port_ = 0;
+  bool lacks_library_ = false;
+  std::string token_;
+};
+
+TEST_F(Truth, ReviewStoresEachDecisionAtOnce) {
+  const TempFolder streams, others;
+  std::optional<ReviewServer> server;
+  server.emplace(truth(), streams);
+  if (server->lacks_library()) GTEST_SKIP() << "this build is without cpp-httplib";
+  ASSERT_EQ(server->token().size(), 32U);
+  EXPECT_THAT(server->ask("GET", "/?token=" + server->token()), HasSubstr("<title>mosbench truth"));
+  const std::string track = box();
+  const auto film = server->get("/film?track=" + track + "&");
+  ASSERT_FALSE(film.at("frames").empty());
+  EXPECT_FALSE(film.at("frames").at(10).at("track").empty());
+  EXPECT_FALSE(film.at("frames").at(10).at("around").empty());
+  EXPECT_THAT(server->decide(track, "static"), HasSubstr(" 200 "));
+  EXPECT_THAT(server->decide(track, "moving"), HasSubstr(" 200 ")) << "of another page";
+  server->kill_now();
+  EXPECT_THAT(cli::run({"truth", "status", truth()}).out, HasSubstr("1 of them decided"));
+  EXPECT_THAT(read_file(folder_ / "truth/decisions.json"), HasSubstr("static"));
+  server.emplace(truth(), others);
+  for (const auto& told : server->get("/tracks?").at("tracks")) {
+    if (told.at("id") != track) continue;
+    EXPECT_EQ(told.at("decided"), "moving") << "the last one wins";
+  }
+  EXPECT_THAT(server->decide(track, "taken-back"), HasSubstr("\"decided\":null"));
+  const cli::Answer second = cli::run({"truth", "review", truth()});
+  EXPECT_EQ(second.exit_code, 2) << "one server at a time";
+}
+
+TEST_F(Truth, ReviewAnswersNobodyWithoutTheToken) {
+  const TempFolder streams;
+  const ReviewServer server(truth(), streams);
+  if (server.lacks_library()) GTEST_SKIP() << "this build is without cpp-httplib";
+  for (const char* target : {"/", "/tracks", "/?token=0", "/film?track=room/1"}) {
+    EXPECT_THAT(server.ask("GET", target), HasSubstr(" 403 ")) << target;
+  }
+  EXPECT_THAT(server.ask("POST", "/decide?track=" + box() + "&decided=moving"), HasSubstr(" 403 "));
+  EXPECT_THAT(server.decide(box(), "maybe"), HasSubstr(" 400 "));
+  EXPECT_THAT(server.decide("room/99999", "moving"), HasSubstr(" 404 "));
+  EXPECT_FALSE(is_there(folder_ / "truth/decisions.json"));
 }
 
 }  // namespace
