@@ -18,12 +18,12 @@
 namespace mosbench {
 namespace {
 
-std::string remark_of_note(const std::filesystem::path& file) {
+std::string doubt_of_note(const std::filesystem::path& file) {
   const nlohmann::ordered_json json = parse_json(read_file(file), file);
-  if (json.is_object() && json.contains("remark") && json["remark"].is_string()) {
-    return json["remark"];
+  if (json.is_object() && json.contains("doubt") && json["doubt"].is_string()) {
+    return json["doubt"];
   }
-  throw DataError(file, "has no \"remark\"", "the file as `mosbench truth write` wrote it");
+  throw DataError(file, "has no \"doubt\"", "the file as `mosbench truth write` wrote it");
 }
 
 }  // namespace
@@ -72,7 +72,7 @@ void KittiSequence::pair_labels() {
         fmt::format("labels for {} of {}", recording.truth_files.size(), counted(size(), "scan")));
   }
   const std::filesystem::path note = label_folder_ / kTruthNote;
-  if (is_there(note)) recording.remarks.push_back(remark_of_note(note));
+  if (is_there(note)) recording.doubts.push_back(doubt_of_note(note));
 }
 
 /// A labelled cloud with its points in another order would label the wrong ones.

@@ -108,6 +108,7 @@ TrackList parse_tracks(std::string_view text, const std::filesystem::path& file)
     }
     for (const ordered_json& member : json.at("tracks")) {
       const TruthTrack& track = list.tracks.emplace_back(track_from(member));
+      if (!list.fingerprints.contains(track.sequence)) throw std::invalid_argument("sequence");
       if (!ids.insert(track.id()).second) throw std::invalid_argument("tracks");
     }
   } catch (const ordered_json::exception& error) {

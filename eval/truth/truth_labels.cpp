@@ -96,17 +96,17 @@ std::string note_text(const TruthFolder& truth, const TruthShares& shares) {
   }
   const double unsure = 100.0 * static_cast<double>(shares.unsure) /
                         static_cast<double>(std::max<std::size_t>(shares.points, 1));
-  return json_text({{"format", 1},
-                    {"remark", fmt::format("truth: {}, {:.1f} % unsure",
-                                           counted(decisions, "decision"), unsure)},
-                    {"points",
-                     {{"all", shares.points},
-                      {"moving", shares.moving},
-                      {"unsure", shares.unsure},
-                      {"by_hand", shares.by_hand},
-                      {"completed", shares.completed},
-                      {"not_looked_at", shares.guessed}}},
-                    {"decided", std::move(tracks)}});
+  return json_text(
+      {{"format", 1},
+       {"doubt", fmt::format("truth: {}, {:.1f} % unsure", counted(decisions, "decision"), unsure)},
+       {"points",
+        {{"all", shares.points},
+         {"moving", shares.moving},
+         {"unsure", shares.unsure},
+         {"by_hand", shares.by_hand},
+         {"completed", shares.completed},
+         {"not_looked_at", shares.guessed}}},
+       {"decided", std::move(tracks)}});
 }
 
 TruthShares write_sequence(const TruthFolder& truth, const Result& run,

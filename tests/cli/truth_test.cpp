@@ -149,10 +149,13 @@ TEST_F(Truth, IsTruthOfTheDriveForRunAndScore) {
                                     "--out", (folder_ / "run").string()});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("truth: 1 decision, 0.0 % unsure"));
+  const cli::Answer score =
+      cli::run({"score", (folder_ / "room").string(), "--predictions", (folder_ / "run").string()});
+  EXPECT_THAT(score.out, HasSubstr("truth: 1 decision, 0.0 % unsure"));
   write_file_atomic(folder_ / "room/labels/truth.json", "{}");
   const cli::Answer broken = cli::run({"convert", (folder_ / "room").string(), "--check"});
   EXPECT_EQ(broken.exit_code, 3);
-  EXPECT_THAT(broken.err, HasSubstr("truth.json: has no \"remark\", expected the file as "
+  EXPECT_THAT(broken.err, HasSubstr("truth.json: has no \"doubt\", expected the file as "
                                     "`mosbench truth write` wrote it"));
 }
 

@@ -70,7 +70,7 @@ TEST(TruthTracks, RefuseAFileThatIsNotTheirs) {
   EXPECT_EQ(refused("{}"), "f: lacks \"format\"" + wrote);
   EXPECT_EQ(refused(R"({"format": 2})"), "f: has a wrong \"format\"" + wrote);
   const auto with = [](const std::string& track) {
-    return R"({"format": 1, "fingerprints": {}, "tracks": [)" + track + "]}";
+    return R"({"format": 1, "fingerprints": {"08": ""}, "tracks": [)" + track + "]}";
   };
   const std::string good =
       R"({"sequence": "08", "number": 1, "first_scan": 0, "last_scan": 0, "scans": 1, "points": 1, )"
@@ -83,6 +83,8 @@ TEST(TruthTracks, RefuseAFileThatIsNotTheirs) {
   EXPECT_EQ(refused(changed("\"number\": 1", "\"number\": 0")),
             "f: has a wrong \"number\"" + wrote);
   EXPECT_EQ(refused(changed("0.5", "1.5")), "f: has a wrong \"doubt\"" + wrote);
+  EXPECT_EQ(refused(changed("\"08\", \"number\"", "\"09\", \"number\"")),
+            "f: has a wrong \"sequence\"" + wrote);
   EXPECT_EQ(refused(changed("moving", "maybe")), "f: has a wrong \"guess\"" + wrote);
 }
 
