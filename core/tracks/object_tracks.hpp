@@ -31,6 +31,7 @@ class Track {
  public:
   std::uint32_t last_scan = 0;
   std::vector<Sighting> sightings;
+  std::uint32_t number = 0;  ///< from 1, of those that others know of
 
  private:
   friend class ObjectTracks;

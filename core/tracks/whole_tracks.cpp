@@ -165,16 +165,19 @@ std::vector<LabelledScan> WholeTracks::release_due(bool all) {
   return labelled;
 }
 
-LabelledScan WholeTracks::judged(HeldScan& scan) const {
+LabelledScan WholeTracks::judged(HeldScan& scan) {
   LabelledScan result = std::move(scan.result);
   result.labels.assign(scan.points, kStaticLabel);
   if (context().scores) {
     result.scores.assign(scan.points, 0);
     result.reasons.assign(scan.points, Reason::kNone);
+    result.objects.assign(scan.points, 0);
   }
   for (std::size_t i = 0; i < scan.clusters.size(); ++i) {
     const Cluster& cluster = scan.clusters[i];
-    const std::vector<Sighting>& sightings = ObjectTracks::whole(scan.tracks[i])->sightings;
+    const std::shared_ptr<Track> track = ObjectTracks::whole(scan.tracks[i]);
+    const std::vector<Sighting>& sightings = track->sightings;
+    if (track->number == 0) track->number = ++numbered_;
     const bool moving = moves(sightings, period_.period_s);
     const float score = context().scores ? share_through(sightings) : 0;
     for (std::size_t j = 0; j < cluster.points.size(); ++j) {
@@ -182,6 +185,7 @@ LabelledScan WholeTracks::judged(HeldScan& scan) const {
       if (moving) result.labels[point] = kMovingLabel;
       if (!context().scores) continue;
       result.scores[point] = score;
+      result.objects[point] = track->number;
       if (moving) result.reasons[point] = cluster.reasons[j];
     }
   }

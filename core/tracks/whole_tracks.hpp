@@ -78,7 +78,7 @@ class WholeTracks final : public ScanMethod<SeenScan> {
   void look_at_next();
   bool is_due(const HeldScan& front) const;
   std::vector<LabelledScan> release_due(bool all);
-  LabelledScan judged(HeldScan& scan) const;
+  LabelledScan judged(HeldScan& scan);
 
   WholeTracksConfig config_;
   std::unique_ptr<Method> proposing_;
@@ -89,6 +89,7 @@ class WholeTracks final : public ScanMethod<SeenScan> {
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  // of the first scan
   std::deque<HeldScan> held_;
   std::uint32_t first_held_ = 0, proposed_ = 0, looked_ = 0;  // scans so far
+  std::uint32_t numbered_ = 0;                                // tracks
 };
 
 }  // namespace mosbench::tracks

@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <unordered_map>
 #include <utility>
 
@@ -11,9 +12,21 @@
 #include "datasets/disk/folder_listing.hpp"
 #include "datasets/formats/scan_file.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/json_text.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
+namespace {
+
+std::string doubt_of_note(const std::filesystem::path& file) {
+  const nlohmann::ordered_json json = parse_json(read_file(file), file);
+  if (json.is_object() && json.contains("doubt") && json["doubt"].is_string()) {
+    return json["doubt"];
+  }
+  throw DataError(file, "has no \"doubt\"", "the file as `mosbench truth write` wrote it");
+}
+
+}  // namespace
 
 KittiSequence::KittiSequence(std::string name, const std::filesystem::path& folder,
                              const Reading& asked, const SequenceLayout& layout)
@@ -58,6 +71,8 @@ void KittiSequence::pair_labels() {
     recording.remarks.push_back(
         fmt::format("labels for {} of {}", recording.truth_files.size(), counted(size(), "scan")));
   }
+  const std::filesystem::path note = label_folder_ / kTruthNote;
+  if (is_there(note)) recording.doubts.push_back(doubt_of_note(note));
 }
 
 /// A labelled cloud with its points in another order would label the wrong ones.

@@ -11,6 +11,9 @@
 
 namespace mosbench {
 
+/// Beside labels that `mosbench truth write` wrote: where they come from.
+inline constexpr const char* kTruthNote = "truth.json";
+
 /// Where a layout keeps what belongs to a sequence, and how its labels are written.
 struct SequenceLayout {
   FolderLayout folder = {};

@@ -56,11 +56,12 @@ std::int64_t Reading::moved_ns(std::int64_t pose_ns) const {
 
 std::vector<std::string> lidar_names(const Reading& asked) {
   constexpr std::size_t kMost = 6;
+  const std::string all = asked.lidars.value_or("");
   std::vector<std::string> names;
-  for (const std::string_view part : split_at_commas(asked.lidars.value_or(""))) {
+  for (const std::string_view part : split_at_commas(all)) {
     if (part.empty() || names.size() == kMost || std::ranges::find(names, part) != names.end()) {
       throw UsageError(fmt::format("{}: expected the names of one to six LiDARs, each once",
-                                   option("lidars", asked.lidars.value_or(""))));
+                                   option("lidars", all)));
     }
     names.emplace_back(part);
   }

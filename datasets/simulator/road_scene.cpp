@@ -16,7 +16,7 @@ bool is_free_of_crossings(double x_m) {
 
 /// Adds a car whose windows let three in ten rays through, to its seats or to what is behind it.
 void park_car(Scene& scene, SceneBuilder& add, std::array<double, 2> at_m) {
-  const auto [x_m, y_m] = at_m;
+  const double x_m = at_m[0], y_m = at_m[1];
   const auto pane = [&](double ahead_m, double left_m, std::array<double, 3> size_m) {
     add.box({x_m + ahead_m, y_m + left_m}, 1.0, size_m);
     scene.structures.back().let_through = 0.3;

@@ -72,5 +72,6 @@ CommandRun add_simulate(CLI::App& command);
 CommandRun add_stats(CLI::App& command);
 CommandRun add_table(CLI::App& command);
 CommandRun add_trajectory(CLI::App& command);
+CommandRun add_truth(CLI::App& command);
 
 }  // namespace mosbench

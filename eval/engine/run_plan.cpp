@@ -233,6 +233,7 @@ RunPlan open_job(const Job& job, unsigned threads, const std::shared_ptr<SharedR
 RunPlan plan_run(const Job& job, const RunPlace& place) {
   RunPlan plan = open_job(job, place.threads, place.shared);
   plan.settings.keeps_scores = place.scores;
+  plan.settings.keeps_objects = place.objects;
   plan.settings.is_one_of_several = place.shared != nullptr;
   plan.out = place.out.value_or(default_out(plan));
   if (place.shared) plan.out /= plan.settings.method->name;

@@ -21,6 +21,7 @@ struct RunPlace {
   bool overwrite = false;
   bool verify = false;  ///< read all input of finished sequences again
   bool scores = false;
+  bool objects = false;  ///< with the scores
   /// With the other methods of a list, whose results go to folders of their own below `out`.
   std::shared_ptr<SharedReading> shared = nullptr;
 };

@@ -176,11 +176,13 @@ class SequenceRun {
     const PointFiles wanted = settings_.point_files();
     const std::size_t scores = wanted.scores ? points : result.scores.size();
     const std::size_t reasons = wanted.reasons ? points : result.reasons.size();
+    const std::size_t objects = wanted.objects ? points : result.objects.size();
     if (result.labels.size() != points || result.scores.size() != scores ||
-        result.reasons.size() != reasons) {
-      fault(fmt::format("has {} labels, {} scores and {} reasons for the {} points of scan {}",
-                        result.labels.size(), result.scores.size(), result.reasons.size(), points,
-                        accepted_));
+        result.reasons.size() != reasons || result.objects.size() != objects) {
+      fault(fmt::format(
+          "has {} labels, {} scores, {} reasons and {} objects for the {} points of scan {}",
+          result.labels.size(), result.scores.size(), result.reasons.size(), result.objects.size(),
+          points, accepted_));
     }
     ++accepted_;
   }
@@ -228,6 +230,7 @@ class SequenceRun {
     if (wanted.reasons) {
       write_file_atomic(reason_file(*folder_, stem), format_reasons(result.reasons));
     }
+    if (wanted.objects) write_labels(object_file(*folder_, stem), result.objects);
   }
 
   void finish_settling() {

@@ -25,10 +25,13 @@ struct RunSettings {
   unsigned threads = 1;
   bool keeps_labels = true;        ///< writes a file per scan
   bool keeps_scores = false;       ///< also writes every point's score
+  bool keeps_objects = false;      ///< with the scores also each point's object
   bool is_one_of_several = false;  ///< progress then names the method
 
   /// Reasons come with the scores of a method that gives some.
-  PointFiles point_files() const { return {keeps_scores, keeps_scores && method->gives_reasons}; }
+  PointFiles point_files() const {
+    return {keeps_scores, keeps_scores && method->gives_reasons, keeps_objects};
+  }
 };
 
 /// Returns what messages call a run over a sequence: its name, and with `is_one_of_several` also

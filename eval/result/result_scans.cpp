@@ -233,6 +233,10 @@ std::filesystem::path reason_file(const std::filesystem::path& folder, std::stri
   return folder / "reasons" / fmt::format("{}.reason", stem);
 }
 
+std::filesystem::path object_file(const std::filesystem::path& folder, std::string_view stem) {
+  return folder / "objects" / fmt::format("{}.object", stem);
+}
+
 bool same_input(const Sequence& sequence, const std::optional<std::string>& stamp,
                 const Result& result) {
   if (stamp && result.places && result.places->file_stamp == *stamp) return true;

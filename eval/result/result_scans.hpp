@@ -41,6 +41,9 @@ std::string_view format_reasons(std::span<const Reason> reasons);
 /// reasons/<stem>.reason of a run's folder.
 std::filesystem::path reason_file(const std::filesystem::path& folder, std::string_view stem);
 
+/// objects/<stem>.object of a run's folder: LabelledScan::objects, stored as labels.
+std::filesystem::path object_file(const std::filesystem::path& folder, std::string_view stem);
+
 /// Whether a result was made from the frames that `sequence` has now; `stamp` is its `file_stamp`.
 /// Files that were merely copied or touched hold the same frames: only then, and without a stamp,
 /// are those read. Throws DataError.

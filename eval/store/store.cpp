@@ -56,7 +56,8 @@ constexpr const char* kResult = "result.json";
 // What a run writes; poses.txt with its mark where it found them, the last six by --write.
 constexpr std::array kWritten = {kLabels,     "scores",     "reasons",         kResult,
                                  "poses.txt", "boxes.txt",  "poses.txt.frame", "boxes.json",
-                                 "moving",    "static.ply", "static.pcd",      "products.json"};
+                                 "moving",    "static.ply", "static.pcd",      "products.json",
+                                 "objects"};
 
 std::vector<fs::path> entries(const fs::path& folder) {
   std::error_code error;
@@ -231,9 +232,10 @@ std::optional<Result> ResultFolder::finished(const Sequence& sequence, const Res
         "--overwrite to replace them",
         folder_.string(), different));
   }
-  const std::array<ScanFiles, 3> kinds = {{{kLabels, ".label", 4, true},
+  const std::array<ScanFiles, 4> kinds = {{{kLabels, ".label", 4, true},
                                            {"scores", ".score", 4, point_files.scores},
-                                           {"reasons", ".reason", 1, point_files.reasons}}};
+                                           {"reasons", ".reason", 1, point_files.reasons},
+                                           {"objects", ".object", 4, point_files.objects}}};
   for (const ScanFiles& files : kinds) {
     refuse_extra(folder_ / files.folder, files.extension, sequence);
   }

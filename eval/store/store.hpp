@@ -24,6 +24,7 @@ std::string changed_members(const nlohmann::ordered_json& there, const nlohmann:
 struct PointFiles {
   bool scores = false;
   bool reasons = false;
+  bool objects = false;
 };
 
 /// Who writes to a folder of results.
@@ -32,10 +33,10 @@ enum class Writers : std::uint8_t {
   kMany  ///< processes of several hosts, whose results are the same
 };
 
-/// The folder <out>/<sequence> of a run: labels/<stem>.label, scores/<stem>.score and
-/// reasons/<stem>.reason when they were asked for, and result.json. It appears as a whole when the
-/// sequence is done; until then everything lies in `<folder>.partial`, which the next run clears.
-/// So a killed or failed run never mixes with earlier results.
+/// The folder <out>/<sequence> of a run: labels/<stem>.label, scores/<stem>.score,
+/// reasons/<stem>.reason and objects/<stem>.object when they were asked for, and result.json. It
+/// appears as a whole when the sequence is done; until then everything lies in `<folder>.partial`,
+/// which the next run clears. So a killed or failed run never mixes with earlier results.
 class ResultFolder {
  public:
   explicit ResultFolder(std::filesystem::path folder, Writers writers = Writers::kOne)

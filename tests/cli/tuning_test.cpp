@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 namespace fs = std::filesystem;
+
 using nlohmann::ordered_json;
 using testing::AllOf;
 using testing::HasSubstr;

@@ -31,6 +31,8 @@
 #include "eval/result/result_scans.hpp"
 #include "eval/result/settings_json.hpp"
 #include "eval/tables/published.hpp"
+#include "eval/truth/decisions.hpp"
+#include "eval/truth/track_list.hpp"
 #include "tests/fuzz/memory_file.hpp"
 #include "tests/temp_folder.hpp"
 
@@ -355,12 +357,23 @@ inline void result(std::string_view bytes) {
   });
 }
 
+inline void tracks(std::string_view text) {
+  const std::string formatted = format_tracks(parse_tracks(text, "f"));
+  require(format_tracks(parse_tracks(formatted, "f")) == formatted);
+}
+
+inline void decisions(std::string_view text) {
+  const std::vector<Decision> parsed = parse_decisions(text, "f");
+  // Bytes that are no UTF-8 are replaced when they are written.
+  require(parse_decisions(format_decisions(parsed), "f").size() == parsed.size());
+}
+
 struct Parser {
   const char* name;  ///< of its corpus folder and its libFuzzer target
   void (*parse)(std::string_view);
   std::size_t mutations = 3000;  ///< that the replay tries; fewer where each takes a process
 };
-inline constexpr std::array<Parser, 31> kParsers = {{{"bin", bin},
+inline constexpr std::array<Parser, 33> kParsers = {{{"bin", bin},
                                                      {"nuscenes_table", nuscenes_table},
                                                      {"tracklets", tracklets},
                                                      {"tracking_labels", tracking_labels},
@@ -389,6 +402,8 @@ inline constexpr std::array<Parser, 31> kParsers = {{{"bin", bin},
                                                      {"hdf5", hdf5, 600},
                                                      {"scene", scene},
                                                      {"config", config},
+                                                     {"tracks", tracks},
+                                                     {"decisions", decisions},
                                                      {"result", result},
                                                      {"predictions", predictions}}};
 

@@ -41,8 +41,8 @@ struct LabelledScan {
   std::vector<std::uint32_t> labels;  ///< kStaticLabel or kMovingLabel, one per pushed point
   std::vector<float> scores;          ///< larger: more likely to move; empty unless asked for
   std::vector<Reason> reasons;        ///< the same; empty of methods that give none
-  /// Number of the moving object that each point belongs to, from 1 and the same in all scans, 0
-  /// for none; empty when the method finds no objects.
+  /// Number of the object of each point, moving by its labels or not, from 1 and the same in all
+  /// scans, 0 for none; empty when the method finds none, and of whole tracks without scores.
   std::vector<std::uint32_t> objects;
   std::optional<double> threshold;   ///< that the scores were compared with, if there is one
   bool judged = false;               ///< false: too little past or future, all points are static

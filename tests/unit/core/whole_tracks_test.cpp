@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <vector>
@@ -99,6 +101,35 @@ TEST(WholeTracks, FindTwoWhoCross) {
   const Judged judged = judge(scene, nothing);
   EXPECT_GT(judged.share[0], 0.85);
   EXPECT_GT(judged.share[1], 0.8) << "the one in front hides the other";
+}
+
+TEST(WholeTracks, NumberAnObjectAlikeInAllScans) {
+  const TrackScene scene{.things = {kPasser, {person(12, -9), {0, 0.8, 0}}}};
+  auto told = std::make_unique<ToldMethod>();
+  std::vector<SceneScan> scans;
+  for (int k = 0; k < scene.scans; ++k) {
+    scans.push_back(cast(scene, k));
+    told->labels.emplace_back(scans.back().points.size(), kStaticLabel);
+  }
+  WholeTracks method(kConfig, std::move(told), {.scores = true});
+  std::vector<LabelledScan> labelled;
+  for (const SceneScan& scan : scans) {
+    std::ranges::move(method.push(scan.points, scan.map_from_sensor), std::back_inserter(labelled));
+  }
+  std::ranges::move(method.finish(), std::back_inserter(labelled));
+  std::set<std::uint32_t> numbers[2];
+  for (std::size_t k = 0; k < labelled.size(); ++k) {
+    ASSERT_EQ(labelled[k].objects.size(), scans[k].thing.size());
+    for (std::size_t i = 0; i < scans[k].thing.size(); ++i) {
+      if (labelled[k].labels[i] == kMovingLabel) {
+        EXPECT_GT(labelled[k].objects[i], 0U) << "what moves is of a track";
+        if (scans[k].thing[i] >= 0) numbers[scans[k].thing[i]].insert(labelled[k].objects[i]);
+      }
+    }
+  }
+  EXPECT_EQ(numbers[0].size(), 1U);
+  ASSERT_FALSE(numbers[1].empty());
+  EXPECT_FALSE(numbers[1].contains(*numbers[0].begin())) << "they never meet";
 }
 
 TEST(WholeTracks, DoNotDependOnThreads) {

@@ -100,7 +100,7 @@ TEST(SequenceRunner, RefusesAMethodThatLabelsOtherThanItWasGiven) {
   };
   EXPECT_EQ(
       message_of<std::logic_error>([&] { run_sequence(TwoScans(), settings, folder.path()); }),
-      "method broken has 3 labels, 0 scores and 0 reasons for the 1 points of scan 0");
+      "method broken has 3 labels, 0 scores, 0 reasons and 0 objects for the 1 points of scan 0");
   kind.make = [](const Settings&, const RunContext&) -> std::unique_ptr<Method> {
     return std::make_unique<BrokenMethod>(true);
   };
@@ -142,7 +142,7 @@ TEST(SequenceRunner, WantsReasonsWithTheScoresOfAMethodThatGivesSome) {
   kind.gives_reasons = true;
   EXPECT_EQ(
       message_of<std::logic_error>([&] { run_sequence(TwoScans(), settings, folder.path()); }),
-      "method broken has 1 labels, 1 scores and 0 reasons for the 1 points of scan 0");
+      "method broken has 1 labels, 1 scores, 0 reasons and 0 objects for the 1 points of scan 0");
 }
 
 }  // namespace

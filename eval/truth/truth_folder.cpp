@@ -1,0 +1,88 @@
+#include "eval/truth/truth_folder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+
+#include "datasets/disk/files.hpp"
+#include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
+#include "eval/result/tell.hpp"
+
+namespace mosbench {
+namespace fs = std::filesystem;
+
+fs::path tracks_file(const fs::path& folder) { return folder / "tracks.json"; }
+fs::path decisions_file(const fs::path& folder) { return folder / "decisions.json"; }
+
+std::vector<TruthTrack> TruthFolder::undecided() const {
+  std::vector<TruthTrack> left;
+  std::ranges::copy_if(tracks, std::back_inserter(left),
+                       [&](const TruthTrack& track) { return !decided.contains(track.id()); });
+  return left;
+}
+
+std::vector<const TruthTrack*> TruthFolder::contradicted() const {
+  std::vector<const TruthTrack*> found;
+  for (const TruthTrack& track : tracks) {
+    const auto said = decided.find(track.id());
+    const Decided against = track.moves ? Decided::kStatic : Decided::kMoving;
+    if (said != decided.end() && said->second == against && track.doubt < 0.2) {
+      found.push_back(&track);
+    }
+  }
+  return found;
+}
+
+void TruthFolder::decide(const Decision& decision) {
+  decisions = read_decisions(path);
+  decisions.push_back(decision);
+  commit_file(decisions_file(path), format_decisions(decisions));
+  decided = last_of_each(decisions);
+}
+
+std::string left_text(const std::vector<TruthTrack>& undecided) {
+  // Less than 0.05 % IoU is not worth the seconds.
+  constexpr double kWorthALook = 5e-4, kPerDecision_s = 8;
+  const auto worthy = static_cast<std::size_t>(std::ranges::count_if(
+      undecided, [](const TruthTrack& track) { return track.worth >= kWorthALook; }));
+  return fmt::format("{} left, about {}", counted(worthy, "decision"),
+                     duration_text(kPerDecision_s * static_cast<double>(worthy)));
+}
+
+std::vector<Decision> read_decisions(const fs::path& folder) {
+  const fs::path file = decisions_file(folder);
+  if (!is_there(file)) return {};
+  return parse_decisions(read_file(file), file);
+}
+
+TruthFolder open_truth(const fs::path& folder) {
+  const fs::path file = tracks_file(folder);
+  if (!is_there(file)) {
+    throw DataError(folder, "has no tracks.json", "a folder that `mosbench truth propose` wrote");
+  }
+  TruthFolder truth{folder, {}, {}, read_decisions(folder), {}};
+  TrackList list = parse_tracks(read_file(file), file);
+  truth.tracks = std::move(list.tracks);
+  truth.runs = load_result_set(folder).sequences;
+  std::map<std::string, std::string> fingerprints;
+  for (const Result& run : truth.runs) {
+    fingerprints[run.sequence.text()] = run.from.fingerprint;
+  }
+  if (fingerprints != list.fingerprints) {
+    throw DataError(file, "is of other scans than the runs beside it", "those of one propose");
+  }
+  std::set<std::string> known;
+  for (const TruthTrack& track : truth.tracks) known.insert(track.id());
+  for (const Decision& decision : truth.decisions) {
+    if (known.contains(decision.track)) continue;
+    throw DataError(decisions_file(folder), "decides on \"" + decision.track + '"',
+                    "a track of tracks.json");
+  }
+  truth.decided = last_of_each(truth.decisions);
+  return truth;
+}
+
+}  // namespace mosbench
