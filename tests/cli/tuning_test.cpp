@@ -11,7 +11,6 @@
 #include "tests/cli/small_sequence.hpp"
 
 namespace mosbench {
-namespace fs = std::filesystem;
 namespace {
 
 namespace fs = std::filesystem;
