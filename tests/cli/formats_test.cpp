@@ -41,6 +41,7 @@ constexpr const char* kAnswered[] = {
     "odometry SIM -o NEW",
     "trajectory OUT/poses.txt --truth SIM",
     "convert SIM --layout helimos --out NEW",
+    "truth propose SIM -o NEW",
     "list",
     "help",
 };
