@@ -130,7 +130,9 @@ std::vector<SequenceFolder> list_recording(const std::filesystem::path& path) {
 Pose mount_of(const std::map<std::string, Pose>& mounts, const std::string& name,
               const std::filesystem::path& file) {
   const auto mount = mounts.find(name);
-  if (mount == mounts.end()) throw DataError(file, "has no row of " + name, "one for each LiDAR");
+  if (mount == mounts.end()) {
+    throw DataError(file, "has no row of " + name, std::string("one for each LiDAR: ") + kMountRow);
+  }
   return mount->second;
 }
 
@@ -155,11 +157,11 @@ std::unique_ptr<Sequence> open_folder_lidars(const SequenceFolder& sequence, con
     const std::string_view scan_folder = scans_in(folder).empty() ? "" : ".";
     const Pose first_from_this =
         mount_of(mounts, names.front(), file).inverse() * mount_of(mounts, name, file);
-    lidars.push_back(
-        {name,
-         std::make_unique<KittiSequence>(sequence.name, folder, reading,
-                                         SequenceLayout{.folder = {.scan_folder = scan_folder}}),
-         first_from_this});
+    auto own = std::make_unique<KittiSequence>(
+        sequence.name, folder, reading, SequenceLayout{.folder = {.scan_folder = scan_folder}});
+    own->set_mark(merged(merged(mark_in(sequence.folder), mark_in(folder)),
+                         mark_of_file(*own->scan_file(0), 0)));
+    lidars.push_back({name, std::move(own), first_from_this});
   }
   if (lidars.size() == 1) return std::move(lidars.front().sequence);
   return std::make_unique<RigSequence>(std::move(lidars), std::vector{file});

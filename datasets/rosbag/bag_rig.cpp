@@ -94,12 +94,6 @@ std::unique_ptr<Sequence> open_bag_lidars(
     reading.topic = topic;
     const Pose mount = lidars.empty() ? Pose::Identity() : mounts.of(frame);
     auto sequence = std::make_unique<BagSequence>(name, open(), reading);
-    if (!lidars.empty() && frame == first) {
-      sequence->add_doubt(fmt::format(
-          "its scans and those of {} are in one frame, {}: rays start at the origin of that, not "
-          "at the LiDARs",
-          topics.front(), frame));
-    }
     lidars.push_back({topic, std::move(sequence), mount});
   }
   if (lidars.size() == 1) return std::move(lidars.front().sequence);

@@ -199,8 +199,9 @@ void visit_fields(Asked& reading, Visit&& visit) {
         "Added to the stamps of poses whose clock is not that of the scans");
   visit("topic", reading.topic, FieldText{"TOPIC"}, "PointCloud2 topic of a bag");
   visit("lidars", reading.lidars, FieldText{"NAME,..."},
-        "Topics of a bag, or folders of scans beside mounts.txt: one LiDAR, or up to six that are "
-        "merged, the first of which gives stamps and poses");
+        "Topics of a bag, or folders of scans beside mounts.txt (per LiDAR name tx ty tz qx qy qz "
+        "qw of vehicle_from_lidar, metres): one LiDAR, or up to six that are merged, the first of "
+        "which gives stamps and poses");
   visit("map_frame", reading.map_frame, FieldText{"FRAME"}, "Map frame in the tf tree of a bag");
   visit("pose_topic", reading.pose_topic, FieldText{"TOPIC"},
         "Topic of poses of a bag (default: found)");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <utility>
 
 #include "datasets/formats/point_range.hpp"
@@ -35,6 +36,15 @@ std::vector<std::pair<std::int64_t, std::size_t>> stamps_of(const RigLidar& lida
   }
   std::ranges::sort(stamps);
   return stamps;
+}
+
+/// "rear mounted at (-2.000, 0.000, 0.000) m, turned by 180.0 degrees".
+std::string placed(const RigLidar& lidar) {
+  const Eigen::Vector3d millimetres = (1e3 * lidar.first_from_this.translation()).array().round();
+  const Eigen::Vector3d at_m = (millimetres / 1e3).array() + 0.0;  // no -0
+  const double turn_rad = Eigen::AngleAxisd(lidar.first_from_this.linear()).angle();
+  return fmt::format("{} mounted at ({:.3f}, {:.3f}, {:.3f}) m, turned by {:.1f} degrees",
+                     lidar.name, at_m.x(), at_m.y(), at_m.z(), turn_rad * 180 / std::numbers::pi);
 }
 
 Point mounted(const Pose& first_from_this, const Point& point) {
@@ -133,19 +143,27 @@ void RigSequence::take_in(const RigLidar& lidar, const Partners& partners) {
     all.scans[k].points += scan.points;
     all.scans[k].has_truth = all.scans[k].has_truth && scan.has_truth;
   }
+  const std::size_t merged_scans = partners.size() - missing;
+  const bool are_few = 2 * merged_scans + 1 < std::max(partners.size(), own.scans.size());
+  std::vector<std::string>& said = are_few ? all.doubts : all.remarks;
   if (missing > 0) {
-    all.remarks.push_back(fmt::format("{}: {} of {} have no scan of it within {:g} ms", lidar.name,
-                                      missing, counted(partners.size(), "scan"), half_step_ms()));
+    said.push_back(fmt::format("{}: {} of {} have no scan of it within {:g} ms", lidar.name,
+                               missing, counted(partners.size(), "scan"), half_step_ms()));
   }
-  const std::size_t merged = partners.size() - missing;
-  if (own.scans.size() > merged) {
-    all.remarks.push_back(fmt::format("{}: {} of its {} are left out: no scan of {} is nearest",
-                                      lidar.name, own.scans.size() - merged,
-                                      counted(own.scans.size(), "scan"), lidars_.front().name));
+  if (own.scans.size() > merged_scans) {
+    said.push_back(fmt::format("{}: {} of its {} are left out: no scan of {} is nearest",
+                               lidar.name, own.scans.size() - merged_scans,
+                               counted(own.scans.size(), "scan"), lidars_.front().name));
   }
-  for (const std::string& doubt : own.doubts) {
-    all.doubts.push_back(fmt::format("{}: {}", lidar.name, doubt));
+  if (std::ranges::all_of(own.scans, [](const ScanEntry& scan) { return scan.points == 0; })) {
+    all.doubts.push_back(lidar.name + ": all its scans are empty");
   }
+  for (const auto list : {&Recording::remarks, &Recording::doubts}) {
+    for (const std::string& text : own.*list) {
+      (all.*list).push_back(fmt::format("{}: {}", lidar.name, text));
+    }
+  }
+  all.mark = merged(std::move(all.mark), own.mark);
   std::vector<std::filesystem::path> files = files_of(own);
   std::erase_if(files, [&](const auto& file) {
     return std::ranges::find(all.files, file) != all.files.end();
@@ -153,16 +171,30 @@ void RigSequence::take_in(const RigLidar& lidar, const Partners& partners) {
   all.files.insert(all.files.end(), files.begin(), files.end());
 }
 
-/// Says which LiDARs these are.
+/// Says which LiDARs these are, and where.
 void RigSequence::state() {
-  std::string& lidars = mutable_recording().reading.lidars;
-  lidars = lidars_.front().name;
-  for (auto lidar = std::next(lidars_.begin()); lidar != lidars_.end(); ++lidar) {
-    lidars += fmt::format(", {} mounted {:.3f} m away", lidar->name,
-                          lidar->first_from_this.translation().norm());
+  constexpr double kFarthestM = 20.0, kSameM = 1e-3;
+  Recording& all = mutable_recording();
+  std::string& lidars = all.reading.lidars;
+  bool are_apart = true;
+  for (const RigLidar& lidar : lidars_) {
+    all.lidars.push_back(lidar.name);
+    lidars += lidars.empty() ? lidar.name : ", " + placed(lidar);
+    if (&lidar == &lidars_.front()) continue;
+    const double away_m = lidar.first_from_this.translation().norm();
+    if (away_m > kFarthestM) {
+      all.doubts.push_back(fmt::format("{} is mounted {:.1f} m from {}, expected at most {:g}",
+                                       lidar.name, away_m, all.lidars.front(), kFarthestM));
+    }
+    if (away_m > kSameM) continue;
+    are_apart = false;
+    all.doubts.push_back(
+        fmt::format("{0} is mounted where {1} is, or its scans are in the frame of {1}: rays start "
+                    "at the origin of that, not at the LiDARs",
+                    lidar.name, all.lidars.front()));
   }
-  mutable_recording().remarks.push_back(
-      fmt::format("LiDARs merged: {}; rays start at each point's own", lidars));
+  all.remarks.push_back("LiDARs merged: " + lidars +
+                        (are_apart ? "; rays start at each point's own" : ""));
 }
 
 void RigSequence::read(std::size_t scan_index, Frame& frame) const {

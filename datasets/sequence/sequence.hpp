@@ -67,8 +67,9 @@ struct Recording {
   /// Plain sentences on what was assumed (pose frame), and on what makes numbers doubtful (scans
   /// left out): every output shows these.
   std::vector<std::string> remarks, doubts;
-  DataMark mark;                  ///< of stored data that no sensor measured so
-  bool is_marked_inside = false;  ///< whether what lies beside the data says nothing more
+  std::vector<std::string> lidars;  ///< that are merged, in the order of the origins of rays
+  DataMark mark;                    ///< of stored data that no sensor measured so
+  bool is_marked_inside = false;    ///< whether what lies beside the data says nothing more
   /// What was read in which convention; two runs on the same files may differ in it.
   ReadingDone reading;
   bool has_radial_velocities = false;  ///< whether frames have them

@@ -84,6 +84,15 @@ DataMark disturbed_by(DataMark mark, const std::string& perturb) {
   return mark;
 }
 
+DataMark merged(DataMark mark, const DataMark& other) {
+  if (!mark.simulated) mark.simulated = other.simulated;
+  if (mark.disturbed.find(other.disturbed) == std::string::npos) {
+    mark.disturbed += (mark.disturbed.empty() ? "" : " and ") + other.disturbed;
+  }
+  if (mark.simulated && !mark.disturbed.empty()) mark.simulated->perturb = mark.disturbed;
+  return mark;
+}
+
 std::string disturbed_doubt(const DataMark& mark) {
   return mark.disturbed.empty() ? "" : std::string(kDisturbedDoubt) + mark.disturbed;
 }

@@ -51,6 +51,9 @@ DataMark mark_of_file(const std::filesystem::path& file, int folders_above);
 /// Returns the mark of data that were disturbed once more; the same for an empty text.
 DataMark disturbed_by(DataMark mark, const std::string& perturb);
 
+/// Returns the mark of data that were made of both.
+DataMark merged(DataMark mark, const DataMark& other);
+
 /// Returns the doubt about such data; empty where they were not disturbed. Each begins alike.
 inline constexpr std::string_view kDisturbedDoubt = "disturbed on purpose by ";
 std::string disturbed_doubt(const DataMark& mark);

@@ -19,9 +19,11 @@
 namespace mosbench {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// How far a position is from the nearest wall of the street.
 double from_wall_m(const Eigen::Vector3d& p) {
@@ -87,8 +89,11 @@ TEST_F(Rig, MergesScansByMountsAndByThePosesBetweenTheirStamps) {
     const Sequence& rig = *data.sequences.front();
     expect_right(rig, drive);
     EXPECT_THAT(rig.recording().doubts, IsEmpty());
-    EXPECT_EQ(rig.reading().lidars, "/a, /b mounted 2.000 m away");
-    EXPECT_THAT(rig.remarks(), Contains(HasSubstr("LiDARs merged: /a, /b mounted 2.000 m away")));
+    EXPECT_EQ(rig.reading().lidars,
+              "/a, /b mounted at (-2.000, 0.000, 0.000) m, turned by 85.9 degrees");
+    EXPECT_THAT(rig.remarks(),
+                Contains(AllOf(HasSubstr("LiDARs merged: /a, /b mounted at (-2.000, "),
+                               HasSubstr("degrees; rays start at each point's own"))));
     const Dataset alone = opened({.lidars = "/a"});
     const Frame merged = rig.read(3), one = alone.sequences.front()->read(3);
     EXPECT_TRUE(one.origins.empty());
@@ -207,11 +212,61 @@ TEST_F(Rig, RefusesLidarsWithoutMountOrWithAnotherClock) {
                 "1100.200 s, and from 1000.000 to 1000.200 s, expected clocks of one time"));
 }
 
-TEST_F(Rig, DoubtsOriginsOfScansInOneFrame) {
+/// LiDARs that are where the first is.
+void expect_one_origin(const Sequence& rig) {
+  EXPECT_THAT(rig.recording().doubts,
+              Contains(HasSubstr("rays start at the origin of that, not at the LiDARs")));
+  EXPECT_THAT(rig.remarks(), Not(Contains(HasSubstr("rays start at each point's own"))));
+}
+
+TEST_F(Rig, DoubtsOriginsOfScansInOneFrameAndOfEqualMounts) {
   write_bag({.scans = 3, .frames = {"lidar", "lidar"}});
-  const Dataset data = opened({.lidars = "/a,/b"});
-  EXPECT_THAT(data.sequences.front()->recording().doubts,
-              Contains(HasSubstr("are in one frame, lidar: rays start at the origin of that")));
+  expect_one_origin(*opened({.lidars = "/a,/b"}).sequences.front());
+  RigDrive{.scans = 3}.write_folders(folder_, "rig");
+  folder_.write("rig/mounts.txt", "a 1 0 0 0 0 0 1\nb 1 0 0 0 0 1 0\n");
+  expect_one_origin(*opened({.lidars = "a,b"}, "rig").sequences.front());
+}
+
+TEST_F(Rig, DoubtsLidarsThatAreFarAway) {
+  RigDrive{.scans = 3}.write_folders(folder_, "rig");
+  folder_.write("rig/mounts.txt", "a 1000 0 0 0 0 0 1\nb -1000 0 0 0 0 0 1\n");
+  EXPECT_THAT(opened({.lidars = "a,b"}, "rig").sequences.front()->recording().doubts,
+              Contains("b is mounted 2000.0 m from a, expected at most 20"));
+}
+
+TEST_F(Rig, KeepsMarksAndRemarksOfAllLidars) {
+  RigDrive{.scans = 3}.write_folders(folder_, "rig");
+  folder_.write("rig/a/disturbed.txt", "disturbed: range_noise_m=0.05\n");
+  folder_.write("rig/b/simulated.json",
+                format_simulated_origin({"recording", "town", "1234", 3, 7, "dropout=0.5"}));
+  std::filesystem::remove_all(folder_ / "rig/b/labels");
+  const Dataset data = opened({.lidars = "a,b"}, "rig");
+  const Sequence& rig = *data.sequences.front();
+  ASSERT_TRUE(rig.simulated());
+  EXPECT_EQ(rig.simulated()->scene, "town");
+  EXPECT_EQ(rig.mark().disturbed, "range_noise_m=0.05 and dropout=0.5");
+  EXPECT_EQ(rig.simulated()->perturb, rig.mark().disturbed);
+  EXPECT_THAT(rig.remarks(), Contains("b: no labels/: there is no truth"));
+  const auto one = opened({.poses = StaticPoses{}, .lidars = "b"}, "rig");
+  EXPECT_EQ(one.sequences.front()->mark().disturbed, "dropout=0.5");
+}
+
+TEST_F(Rig, DoubtsLidarsOfWhichLittleIsMerged) {
+  const RigDrive drive{.scans = 6};
+  drive.write_folders(folder_, "rig");
+  folder_.write("rig/b/times.txt", "5.00\n5.10\n15.20\n15.30\n15.40\n15.50\n");
+  for (std::size_t k = 0; k < 6; ++k) {
+    folder_.write(fmt::format("rig/b/{:06}.bin", k), "");
+    folder_.write(fmt::format("rig/b/labels/{:06}.label", k), "");
+  }
+  EXPECT_THAT(opened({.lidars = "a,b"}, "rig").sequences.front()->recording().doubts,
+              AllOf(Contains("b: 4 of 6 scans have no scan of it within 50 ms"),
+                    Contains("b: all its scans are empty")));
+}
+
+TEST(LidarNames, AreTakenWholeHoweverLong) {
+  const std::string a = "/ouster/points", b = "/livox_front_left/lidar/points_with_times";
+  EXPECT_EQ(lidar_names({.lidars = a + ", " + b + ",c"}), (std::vector<std::string>{a, b, "c"}));
 }
 
 TEST_F(Rig, ReadsOneLidarByName) {
@@ -256,7 +311,8 @@ TEST_F(Rig, MergesFoldersBesideTheirMounts) {
 
   EXPECT_THAT(error_of({.lidars = "a,c"}, "rig"), HasSubstr("rig/c: is no folder"));
   std::filesystem::create_directory(folder_ / "rig/c");
-  EXPECT_THAT(error_of({.lidars = "a,c"}, "rig"), HasSubstr("mounts.txt: has no row of c"));
+  EXPECT_THAT(error_of({.lidars = "a,c"}, "rig"),
+              HasSubstr("mounts.txt: has no row of c, expected one for each LiDAR: name tx"));
   std::filesystem::rename(folder_ / "rig/a/poses.txt", folder_ / "rig/poses.txt");
   expect_right(*opened({.lidars = "a,b"}, "rig").sequences.front(), drive);
   std::filesystem::remove(folder_ / "rig/b/times.txt");
@@ -279,6 +335,12 @@ TEST(Mounts, AreOneRowForEachLidar) {
   const auto mounts = parse_mounts("top 1 2 3 0 0 0 1\nside -1 0 0 0 0 1 0\n", "m");
   EXPECT_EQ(mounts.at("top").translation(), Eigen::Vector3d(1, 2, 3));
   EXPECT_NEAR(mounts.at("side").linear()(0, 0), -1, 1e-12);
+  const char* commented =
+      "# vehicle_from_lidar\n\n top 1 2 3 0 0 0 1 # metres\r\n\nb 0 0 0 0 0 0 1";
+  EXPECT_EQ(parse_mounts(commented, "m").size(), 2U);
+  EXPECT_THAT(message_of<DataError>([] { parse_mounts("#\n\ntop 1\n", "m"); }),
+              HasSubstr("m:3: 2 words in the row, expected name tx ty tz qx qy qz qw of "
+                        "vehicle_from_lidar, metres"));
   for (const auto& [text, wrong] : {std::pair{"top 1 2 3 0 0 0\n", "m:1: 7 words in the row"},
                                     {"top 1 2 3 0 0 0 1\ntop 1 2 3 0 0 0 1\n", "m:2: a second row"},
                                     {"top 1 2 x 0 0 0 1\n", "m:1: \"x\" is no finite number"},
