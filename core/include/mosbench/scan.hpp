@@ -25,7 +25,9 @@ struct RayOrigins {
   std::vector<Eigen::Vector3d> positions_m;  ///< of at most 256 sensors, in the points' frame
   std::vector<std::uint8_t> of_point;        ///< an index of positions_m for each point
 
+  /// Whether all rays start at the origin of the points' frame.
   bool empty() const { return of_point.empty(); }
+  /// Returns where the ray of a point starts, in metres.
   Eigen::Vector3d at(std::size_t point) const {
     return empty() ? Eigen::Vector3d::Zero() : positions_m[of_point[point]];
   }
