@@ -16,8 +16,7 @@ namespace mosbench::hmm_mos_plus {
 /// of it did not arrive. Parts of a parked car that come into view are seen one after the other, so
 /// it sums what lay near in the last second. What is new and came into view, or is small, waits for
 /// a second scan. What leaves nothing behind needs less beside it, or nothing where little of it
-/// arrived. What is seen to be flat is the
-/// edge of something that stands, between two beams.
+/// arrived. What is seen to be flat is the edge of something that stands, between two beams.
 class Attachments {
  public:
   explicit Attachments(const Config& config);
