@@ -71,7 +71,6 @@ std::string missing_between(const PartName& before, const Extent& first, const P
 }
 
 void add_doubt(BagParts& parts, const std::string& doubt) {
-  if (doubt.empty()) return;
   parts.doubt += (parts.doubt.empty() ? "" : "; ") + doubt;
 }
 
@@ -103,10 +102,10 @@ std::vector<BagParts> group_parts(const std::vector<fs::path>& bags) {
       found.back().name = name.drive;
       found.back().files.push_back(file);
     } else {
-      add_doubt(found.back(), missing);
+      if (!missing.empty()) add_doubt(found.back(), missing);
       found.push_back({"", {file}});
     }
-    add_doubt(found.back(), missing);
+    if (!missing.empty()) add_doubt(found.back(), missing);
     last = &name;
   }
   // Files before folders, as they were given.

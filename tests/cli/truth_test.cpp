@@ -288,7 +288,8 @@ TEST_F(Truth, ReviewStoresEachDecisionAtOnce) {
   EXPECT_THAT(cli::run({"truth", "status", truth()}).out, HasSubstr("1 of them decided"));
   EXPECT_THAT(read_file(folder_ / "truth/decisions.json"), HasSubstr("static"));
   server.emplace(truth(), others);
-  for (const auto& told : server->get("/tracks?").at("tracks")) {
+  const nlohmann::json stored = server->get("/tracks?");
+  for (const auto& told : stored.at("tracks")) {
     if (told.at("id") != track) continue;
     EXPECT_EQ(told.at("decided"), "moving") << "the last one wins";
   }
