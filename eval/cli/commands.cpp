@@ -27,6 +27,7 @@ std::span<const Command> commands() {
       Command{"odometry", "Find the poses of scans", add_odometry},
       Command{"trajectory", "Score poses against true ones", add_trajectory, "png"},
       Command{"truth", "Make truth of your own: tracks to decide on, and labels", add_truth},
+      Command{"map", "Write a map of a drive without what moved", add_map},
       Command{"convert", "Write a data set in another layout", add_convert},
       Command{"list", "List data sets, methods, presets, protocols and more", add_list},
       Command{"help", "Show the help of a command", add_help},

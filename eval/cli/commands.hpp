@@ -61,6 +61,7 @@ CommandRun add_convert(CLI::App& command);
 CommandRun add_doctor(CLI::App& command);
 CommandRun add_help(CLI::App& command);
 CommandRun add_list(CLI::App& command);
+CommandRun add_map(CLI::App& command);
 CommandRun add_odometry(CLI::App& command);
 CommandRun add_profile(CLI::App& command);
 CommandRun add_rank(CLI::App& command);

@@ -45,16 +45,6 @@ bool has_truth(const std::vector<SequenceOutcome>& outcomes) {
   });
 }
 
-/// Returns the points of a sequence, and those that the method labelled moving.
-std::pair<std::uint64_t, std::uint64_t> moving_points(const Result& result) {
-  std::uint64_t points = 0, moving = 0;
-  for (const ScanRow& row : result.scans) {
-    points += row.points;
-    moving += row.predicted_moving_points;
-  }
-  return {points, moving};
-}
-
 /// Without truth there is nothing to score, but still something to look at.
 void add_moving_points(const std::vector<SequenceOutcome>& outcomes, Sheet& sheet) {
   sheet.lead.emplace_back("no scan has truth: nothing to score");
@@ -283,6 +273,15 @@ Answer run_methods(const JobWords& words, const RunPlace& place,
 }
 
 }  // namespace
+
+std::pair<std::uint64_t, std::uint64_t> moving_points(const Result& result) {
+  std::uint64_t points = 0, moving = 0;
+  for (const ScanRow& row : result.scans) {
+    points += row.points;
+    moving += row.predicted_moving_points;
+  }
+  return {points, moving};
+}
 
 Answer run_data(const JobWords& words, const RunPlace& place,
                 std::span<const std::string> products) {

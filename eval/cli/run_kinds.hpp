@@ -1,14 +1,17 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "eval/answer/answer.hpp"
 #include "eval/engine/run_plan.hpp"
 #include "eval/job/job.hpp"
+#include "eval/result/result.hpp"
 
 // What `mosbench run` is given: data, a file that names methods and data, or a published table.
 
@@ -18,6 +21,9 @@ namespace mosbench {
 /// UsageError and DataError.
 Answer run_data(const JobWords& words, const RunPlace& place,
                 std::span<const std::string> products);
+
+/// Returns the points of a sequence, and those that the method labelled moving.
+std::pair<std::uint64_t, std::uint64_t> moving_points(const Result& result);
 
 /// What to do with a file that names methods, data and disturbances to combine.
 struct JobFlags {

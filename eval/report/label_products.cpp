@@ -7,16 +7,14 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
-#include <set>
 #include <string_view>
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/formats/point_range.hpp"
-#include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/report/point_planes.hpp"
 #include "eval/result/result_file.hpp"
 #include "eval/result/tell.hpp"
+#include "eval/static_map/static_map.hpp"
 #include "eval/store/store.hpp"
 
 namespace mosbench {
@@ -24,8 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-constexpr double kMapVoxel_m = 0.1;
 
 std::vector<Eigen::Vector3d> moving_points_of(const JudgedScan& scan) {
   std::vector<Eigen::Vector3d> positions_map_m;
@@ -122,38 +118,6 @@ std::string kitti_text(const ResultScans& scans, const std::vector<std::vector<M
 
 static_assert(std::endian::native == std::endian::little);
 
-/// A binary PLY file of x, y, z in `type` and the intensity.
-template <typename Coordinate>
-std::string ply_of(const std::vector<Eigen::Matrix<Coordinate, 3, 1>>& positions_m,
-                   const std::vector<float>& intensities, std::string_view type) {
-  std::string bytes = fmt::format(
-      "ply\nformat binary_little_endian 1.0\nelement vertex {0}\nproperty {1} x\nproperty {1} "
-      "y\nproperty {1} z\nproperty float intensity\nend_header\n",
-      positions_m.size(), type);
-  for (std::size_t i = 0; i < positions_m.size(); ++i) {
-    bytes.append(reinterpret_cast<const char*>(positions_m[i].data()), 3 * sizeof(Coordinate));
-    bytes.append(reinterpret_cast<const char*>(&intensities[i]), sizeof(float));
-  }
-  return bytes;
-}
-
-/// A binary PCD file of x, y, z and the intensity in float32, as PCL's own points have them: it
-/// takes other types of x, y and z for missing.
-std::string pcd_of(const std::vector<Eigen::Vector3d>& positions_m,
-                   const std::vector<float>& intensities) {
-  std::string bytes = fmt::format(
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 "
-      "4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH {0}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS "
-      "{0}\nDATA binary\n",
-      positions_m.size());
-  for (std::size_t i = 0; i < positions_m.size(); ++i) {
-    const Eigen::Vector3f position_m = positions_m[i].cast<float>();
-    bytes.append(reinterpret_cast<const char*>(position_m.data()), 3 * sizeof(float));
-    bytes.append(reinterpret_cast<const char*>(&intensities[i]), sizeof(float));
-  }
-  return bytes;
-}
-
 void write_boxes(const ResultScans& scans, ProductRecord& record) {
   const bool has_json = record.has("boxes.json"), has_text = record.has("boxes.txt");
   if (has_json && has_text) return;
@@ -164,17 +128,22 @@ void write_boxes(const ResultScans& scans, ProductRecord& record) {
   record.write("boxes.json", boxes_text(scans, boxes));
 }
 
-/// The points of a scan that are labelled moving, as they were measured.
+/// The points of a scan that are labelled moving, as they were measured, as a binary PLY file.
 std::string moving_cloud(const JudgedScan& scan) {
-  std::vector<Eigen::Vector3f> positions_m;
-  std::vector<float> intensities;
+  std::string rows;
+  std::size_t points = 0;
   for (std::size_t i = 0; i < scan.outcomes.size(); ++i) {
     const Point& point = scan.frame.points[i];
     if (!is_labelled_moving(scan.outcomes[i])) continue;
-    positions_m.emplace_back(point.x, point.y, point.z);
-    intensities.push_back(point.intensity);
+    const std::array<float, 4> row = {point.x, point.y, point.z, point.intensity};
+    rows.append(reinterpret_cast<const char*>(row.data()), sizeof(row));
+    ++points;
   }
-  return ply_of(positions_m, intensities, "float");
+  return fmt::format(
+             "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty "
+             "float y\nproperty float z\nproperty float intensity\nend_header\n",
+             points) +
+         rows;
 }
 
 void write_moving_clouds(const ResultScans& scans, ProductRecord& record) {
@@ -186,66 +155,27 @@ void write_moving_clouds(const ResultScans& scans, ProductRecord& record) {
   }
 }
 
-/// The first point in each voxel of the map, of those that are labelled static.
-class StaticMap {
- public:
-  void add(const JudgedScan& scan) {
-    for (std::size_t i = 0; i < scan.outcomes.size(); ++i) {
-      const Point& point = scan.frame.points[i];
-      if (is_labelled_moving(scan.outcomes[i]) || !is_drawable(point)) continue;
-      const Eigen::Vector3d position_m = scan.frame.map_from_sensor * position_of(point);
-      std::array<std::int64_t, 3> voxel{};
-      for (std::size_t axis = 0; axis < voxel.size(); ++axis) {
-        voxel[axis] = static_cast<std::int64_t>(
-            std::floor(position_m[static_cast<Eigen::Index>(axis)] / kMapVoxel_m));
-      }
-      if (!voxels_.insert(voxel).second) continue;
-      positions_m_.push_back(position_m);
-      intensities_.push_back(point.intensity);
-    }
-  }
-
-  std::string ply() const { return ply_of(positions_m_, intensities_, "double"); }
-
-  /// Throws DataError naming the file where float32 is too coarse for the voxels.
-  std::string pcd(const fs::path& file) const {
-    constexpr double kMostShare = 0.1;
-    double most_m = 0.0;
-    for (const Eigen::Vector3d& position_m : positions_m_) {
-      most_m = std::max(most_m, position_m.cwiseAbs().maxCoeff());
-    }
-    const float step_m = float_step_m(static_cast<float>(most_m));
-    if (step_m <= kMostShare * kMapVoxel_m) return pcd_of(positions_m_, intensities_);
-    throw DataError(
-        file, fmt::format("positions up to {:.0f} m are {} m apart in float32", most_m, step_m),
-        "poses nearer to their origin, or static-cloud, whose .ply has float64");
-  }
-
- private:
-  std::set<std::array<std::int64_t, 3>> voxels_;
-  std::vector<Eigen::Vector3d> positions_m_;
-  std::vector<float> intensities_;
-};
-
-/// Scans in which the method did not look for motion may hold anything.
-StaticMap static_map_of(const ResultScans& scans) {
-  StaticMap map;
-  Progress progress("static map", scans.rows().size());
-  for (std::size_t k = 0; k < scans.rows().size(); ++k) {
-    if (scans.rows()[k].judged) map.add(scans.read(k));
-    progress.advance();
-  }
-  return map;
+/// Writes the map of what stands still by `format`, unless it is there.
+template <typename Formatter>
+void write_static(const ResultScans& scans, const std::string& file, ProductRecord& record,
+                  Formatter&& format) {
+  if (record.has(file)) return;
+  StaticMap map({}, record.folder() / (file + ".partial"));
+  for_each_judged(scans, [&](const JudgedScan& scan) { map.add(scan); });
+  std::string bytes;
+  format(map, [&](std::string_view part) { bytes += part; });
+  record.write(file, bytes);
 }
 
 void write_static_ply(const ResultScans& scans, ProductRecord& record) {
-  if (!record.has("static.ply")) record.write("static.ply", static_map_of(scans).ply());
+  write_static(scans, "static.ply", record, format_ply);
 }
 
 void write_static_pcd(const ResultScans& scans, ProductRecord& record) {
   const std::string file = "static.pcd";
-  if (record.has(file)) return;
-  record.write(file, static_map_of(scans).pcd(record.folder() / file));
+  write_static(scans, file, record, [&](const StaticMap& map, const ByteSink& sink) {
+    format_pcd(map, record.folder() / file, sink);
+  });
 }
 
 struct Product {
@@ -258,11 +188,6 @@ constexpr std::array kProducts = {
     Product{"static-cloud", write_static_ply}, Product{"static-cloud-pcd", write_static_pcd}};
 
 }  // namespace
-
-bool is_labelled_moving(PointOutcome outcome) {
-  return outcome == PointOutcome::kTruePositive || outcome == PointOutcome::kFalsePositive ||
-         outcome == PointOutcome::kIgnoredMoving;
-}
 
 ordered_json boxes_json(const ResultScans& scans, const std::vector<std::size_t>& wanted) {
   ordered_json json = ordered_json::array();

@@ -60,7 +60,7 @@ MAY_INCLUDE = {
     "eval/truth": {"core/include", "datasets/", "eval/answer", "eval/predictions", "eval/result"},
     "eval/breakdown": THREADS | {"datasets/"} | NUMBERS,
     "eval/tables": {"core/include", "datasets/"} | NUMBERS,
-    "eval/report": THREADS | {"datasets/", "eval/breakdown", "eval/tables", "eval/trajectory"} | NUMBERS,
+    "eval/report": THREADS | {"datasets/", "eval/breakdown", "eval/static_map", "eval/tables", "eval/trajectory"} | NUMBERS,
     "eval/study": {"core/include", "datasets/", "eval/report"} | NUMBERS,
     "eval/cli": THREADS | {"datasets/", "eval/"},
     "eval/python": THREADS | {"datasets/", "eval/"},

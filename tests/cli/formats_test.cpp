@@ -40,6 +40,7 @@ constexpr const char* kAnswered[] = {
     "doctor SIM",
     "odometry SIM -o NEW",
     "trajectory OUT/poses.txt --truth SIM",
+    "map SIM --out NEW -o NEW.ply",
     "convert SIM --layout helimos --out NEW",
     "truth propose SIM -o NEW",
     "list",
