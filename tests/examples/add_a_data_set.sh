@@ -3,7 +3,7 @@
 # C++: velodyne/*.bin (float32 x, y, z, intensity), poses.txt and, if there is truth, labels/*.label
 # (uint32, 9 static, 251 moving). Here the scans come from CSV rows of x, y, z and moving, and the poses
 # from a TUM file (stamp, translation, quaternion). Expects mosbench in PATH. A layout that mosbench shall
-# recognise takes a row in datasets/layouts; docs/data/adding.md has the steps.
+# recognise takes a row in datasets/layouts; docs/data/data.md has the steps.
 set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT

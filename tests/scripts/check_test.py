@@ -73,8 +73,10 @@ class Pages(unittest.TestCase):
         long = "line\n" * 26
         self.assertEqual(pages.too_long({"README.md": long, "core/README.md": long, "docs/history/README.md": long}),
                          ["core/README.md: 26 lines, expected at most 25"])
-        self.assertEqual(pages.too_long({"docs/a.md": "word " * 18001, "docs/history/b.md": "word " * 9000}),
-                         ["docs: 18001 words without history, expected at most 18000"])
+        self.assertEqual(pages.too_long({"docs/a.md": "word " * 10501, "docs/history/b.md": "word " * 11500}),
+                         ["docs without history: 10501 words, expected at most 10500",
+                          "all pages: 22001 words, expected at most 22000"])
+        self.assertEqual(pages.too_long({"docs/a.md": "word " * 10500, "docs/history/b.md": "word " * 11500}), [])
 
 
 class Headers(unittest.TestCase):
