@@ -34,7 +34,8 @@ std::vector<std::string> doubts_of(const Sequence& sequence) {
   };
   const bool is_still = std::ranges::all_of(scans, is_first);
   const std::string& source = sequence.reading().poses.source;
-  if (is_still && !source.empty() && source != kStaticPoses) facts["equal_poses"] = scans.size();
+  const bool has_poses = !source.empty() && source != kStaticPoses && source != kNoPoses;
+  if (is_still && has_poses) facts["equal_poses"] = scans.size();
   for (const Subject subject : {Subject::kStamps, Subject::kStill}) {
     for (Symptom& symptom : judged(checks(), subject, facts, sequence.name())) {
       doubts.push_back(std::move(symptom.what));

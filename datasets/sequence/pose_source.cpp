@@ -349,7 +349,8 @@ std::vector<std::size_t> place_scans(const fs::path& folder, const std::string& 
                                      const Reading& asked, Recording& recording) {
   if (asked.is_by_odometry()) {
     const std::vector<std::optional<Pose>> unposed(recording.scans.size(), Pose::Identity());
-    return place_scans({.map_from_sensor = unposed, .done = {.source = "none"}}, recording);
+    return place_scans({.map_from_sensor = unposed, .done = {.source = std::string(kNoPoses)}},
+                       recording);
   }
   const fs::path file = asked.has_own_poses() ? folder / own_file : *asked.pose_file();
   if (asked.has_own_poses() && !is_there(file)) throw missing_poses(folder, file);

@@ -71,6 +71,8 @@ struct StaticPoses {};
 using PosesFrom = std::variant<OwnPoses, PoseFile, ByOdometry, StaticPoses>;
 /// What stands for StaticPoses in options, and in PosesDone::source.
 inline constexpr std::string_view kStaticPoses = "static";
+/// The same of scans that are read without poses.
+inline constexpr std::string_view kNoPoses = "none";
 
 /// One disturbance of a list.
 struct PerturbStep {

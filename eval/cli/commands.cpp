@@ -23,6 +23,7 @@ std::span<const Command> commands() {
       Command{"rank", "Rank runs on the same scans, with what differs in them", add_rank},
       Command{"stats", "Show how good a run is, and by what", add_stats, "png"},
       Command{"compare", "Judge a run against another, or show what differs", add_compare, "junit"},
+      Command{"info", "Tell what a recording is", add_info},
       Command{"doctor", "Find what is wrong with a data set", add_doctor},
       Command{"odometry", "Find the poses of scans", add_odometry},
       Command{"trajectory", "Score poses against true ones", add_trajectory, "png"},

@@ -60,6 +60,7 @@ CommandRun add_compare(CLI::App& command);
 CommandRun add_convert(CLI::App& command);
 CommandRun add_doctor(CLI::App& command);
 CommandRun add_help(CLI::App& command);
+CommandRun add_info(CLI::App& command);
 CommandRun add_list(CLI::App& command);
 CommandRun add_map(CLI::App& command);
 CommandRun add_odometry(CLI::App& command);
