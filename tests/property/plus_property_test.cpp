@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "core/methods/hmm_mos/pipeline.hpp"
 #include "core/methods/hmm_mos_plus/pipeline.hpp"
 #include "tests/small_world.hpp"
 
@@ -176,7 +177,14 @@ TEST(PlusObjectsThatLeave, AreEdgesBetweenTwoBeamsWhereTheyAreSeenToBeFlat) {
 TEST(PlusDelays, AreSaidToBeLongBeyondFifteenScans) {
   EXPECT_THAT(hmm_mos_plus::Pipeline(plus_of_a_room(15), {}).remarks(), testing::IsEmpty());
   EXPECT_THAT(hmm_mos_plus::Pipeline(plus_of_a_room(16), {}).remarks(),
-              testing::ElementsAre(testing::HasSubstr("after 16 scans surfaces")));
+              testing::ElementsAre(testing::HasSubstr("a delay of 16 scans costs precision")));
+  // So they are of hmm-mos, which also says how the end is labelled where that is known.
+  hmm_mos::Config map = plus_of_a_room(15).map;
+  EXPECT_THAT(hmm_mos::Pipeline(map).remarks(), testing::IsEmpty());
+  map.delay_scans = 16;
+  EXPECT_THAT(hmm_mos::Pipeline(map, {.scan_count = 20}).remarks(),
+              testing::ElementsAre(testing::HasSubstr("--set delay=all judges whole tracks"),
+                                   testing::HasSubstr("the last 16 scans have no 16 later ones")));
 }
 
 /// Returns the stamps of `scans` scans.

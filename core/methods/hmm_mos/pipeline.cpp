@@ -153,15 +153,25 @@ std::size_t Pipeline::held_bytes() const {
 std::vector<std::string> Pipeline::remarks() const { return remarks_on_delay(config_, context()); }
 
 std::vector<std::string> remarks_on_delay(const Config& config, const RunContext& context) {
+  constexpr std::size_t kMostDelay_scans = 15;
   const auto delay = static_cast<std::size_t>(config.delay_scans);
-  if (delay == 0 || !context.scan_count) return {};
   const std::string scans = std::to_string(delay) + " scans";
-  if (*context.scan_count <= delay) {
-    return {"shorter than the delay of " + scans + ": every scan is labelled static"};
+  std::vector<std::string> remarks;
+  if (delay > kMostDelay_scans) {
+    remarks.push_back("a delay of " + scans + " costs precision: after more than " +
+                      std::to_string(kMostDelay_scans) +
+                      " scans, surfaces seen from elsewhere look as if they had left; --set "
+                      "delay=all judges whole tracks instead");
   }
-  return {"the last " + scans + " have no " + std::to_string(delay) +
-          " later ones: the first of them is labelled static and the others are judged online, as "
-          "the authors' program does"};
+  if (delay == 0 || !context.scan_count) return remarks;
+  if (*context.scan_count <= delay) {
+    remarks.push_back("shorter than the delay of " + scans + ": every scan is labelled static");
+  } else {
+    remarks.push_back("the last " + scans + " have no " + std::to_string(delay) +
+                      " later ones: the first of them is labelled static and the others are judged "
+                      "online, as the authors' program does");
+  }
+  return remarks;
 }
 
 void check(const Config& config) {

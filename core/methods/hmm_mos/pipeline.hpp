@@ -97,7 +97,8 @@ class Pipeline final : public MappedMethod {
   std::deque<HeldScan> held_;  // the last delay + 1 scans, current one last
 };
 
-/// Describes how the end of a delayed sequence is labelled; empty when online or of unknown length.
+/// Says that a long delay costs precision, and how the end of a delayed sequence of known length is
+/// labelled.
 std::vector<std::string> remarks_on_delay(const Config& config, const RunContext& context);
 
 /// Makes the method that follows the paper's section III step by step: hash maps of single voxels,

@@ -6,6 +6,7 @@
 
 #include "core/base/method_row.hpp"
 #include "core/base/stage_clock.hpp"
+#include "core/methods/hmm_mos/pipeline.hpp"
 #include "core/methods/hmm_mos_plus/config.hpp"
 #include "core/methods/hmm_mos_plus/objects.hpp"
 #include "core/tracks/judged_by_tracks.hpp"
@@ -134,12 +135,8 @@ std::size_t Pipeline::held_bytes() const {
 }
 
 std::vector<std::string> Pipeline::remarks() const {
-  constexpr int kMostDelay_scans = 15;
-  if (config_.map.delay_scans <= kMostDelay_scans) return {};
-  return {"after " + std::to_string(config_.map.delay_scans) +
-          " scans surfaces that are seen from elsewhere look as if they had left: precision falls "
-          "beyond a delay of " +
-          std::to_string(kMostDelay_scans) + "; --set delay=all judges whole tracks instead"};
+  // The end of a sequence is labelled otherwise than by hmm-mos.
+  return hmm_mos::remarks_on_delay(config_.map, {});
 }
 
 void check(const Config& config) {
