@@ -12,6 +12,7 @@
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/sequence/ego_points.hpp"
+#include "datasets/sequence/pose_clock.hpp"
 #include "datasets/sequence/pose_source.hpp"
 #include "datasets/text/errors.hpp"
 
@@ -30,6 +31,20 @@ std::optional<Pose> tr_of(const std::filesystem::path& folder) {
 /// Returns whether the poses read were turned from the camera of Tr in calib.txt to the lidar.
 bool tr_is_applied(const ReadingDone& reading) { return reading.poses.frame == PoseFrame::kCamera; }
 
+/// Has the clock of poses moved, not their rows, where stamps look them up.
+void advise_offsets(const SequenceCheckup& checkup, std::vector<PoseConvention>& conventions) {
+  const PosesDone& read = checkup.reading.poses;
+  const auto step_s = checkup.facts.number("step_s");
+  if (!read.offset_s || !step_s) return;
+  for (PoseConvention& convention : conventions) {
+    if (convention.rows_later == 0) continue;
+    const double offset_s = read.fitting_offset_s.value_or(
+        mending_offset_s(*read.offset_s, convention.rows_later * *step_s));
+    convention.remedy.pose_offset_s = offset_s;
+    convention.advice = "run with " + option("pose_offset_s", fmt::format("{}", offset_s));
+  }
+}
+
 /// Compares the poses with the motions that scans show.
 void examine_poses(const Sequence& sequence, const std::filesystem::path& folder,
                    SequenceCheckup& checkup) {
@@ -37,7 +52,8 @@ void examine_poses(const Sequence& sequence, const std::filesystem::path& folder
   if (sequence.size() < kFewestScans || checkup.is_partly_turned) return;
   std::vector<Pose> given = poses_of(sequence);
   examine_misplaced_rows(sequence, given, checkup.facts);
-  const auto conventions = other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading));
+  auto conventions = other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading));
+  advise_offsets(checkup, conventions);
   checkup.poses =
       measure_poses(sequence, given, conventions, checkup.facts.number("step_s"), checkup.facts);
 }
@@ -102,7 +118,9 @@ class Examination {
   /// Notes what is no symptom; returns whether anything else is found.
   bool judge(Subject subject, SequenceCheckup& part) {
     Remedy remedy = part.poses ? remedy_of(*part.poses) : Remedy();
-    remedy.pose_offset_s = part.reading.poses.fitting_offset_s;
+    if (const auto fitting_s = part.reading.poses.fitting_offset_s) {
+      remedy.pose_offset_s = fitting_s;
+    }
     bool found = false;
     for (Symptom& symptom : judged(checks(), subject, part.facts, part.name, remedy)) {
       if (symptom.severity == Severity::kNote) {
@@ -191,8 +209,12 @@ class Examination {
   /// Checks the poses, and the labels where nothing speaks against the poses.
   void check_poses(const Sequence& sequence, const std::filesystem::path& folder,
                    SequenceCheckup& part) {
-    bool is_sound = false;
+    // Registration has found these poses, so that it is not asked again.
+    const bool is_found_still =
+        part.reading.poses.source == kStaticPoses && !options_.reading.is_static();
+    bool is_sound = is_found_still;
     attempt(folder, [&] {
+      if (is_found_still) return;
       examine_poses(sequence, folder, part);
       is_sound = part.poses && !judge(Subject::kPoses, part);
       if (!is_sound) return;

@@ -183,6 +183,12 @@ double moved_m(const Layout& layout, const SequenceFolder& folder, Reading readi
   return most_m;
 }
 
+/// Whether something was asked of poses, which others in their place would not have.
+bool asks_of_poses(const Reading& asked) {
+  return asked.map_frame || asked.pose_topic || asked.pose_frame || asked.pose_direction ||
+         asked.pose_format || asked.pose_offset_s != 0.0;
+}
+
 std::unique_ptr<Sequence> opened(const Layout& layout, const SequenceFolder& folder,
                                  const Reading& reading) {
   Reading unposed = reading;
@@ -195,6 +201,7 @@ std::unique_ptr<Sequence> opened(const Layout& layout, const SequenceFolder& fol
   try {
     return layout.open(folder, reading);
   } catch (const MissingPoses& missing) {
+    if (missing.of_some || asks_of_poses(reading)) throw;
     std::unique_ptr<Sequence> sequence = layout.open(folder, unposed);
     const StillSensor sensor = find_still_sensor(*sequence);
     if (sensor.stands) return with_static_poses(std::move(sequence), sensor.said);
