@@ -14,6 +14,7 @@
 #include "datasets/sequence/ego_points.hpp"
 #include "datasets/sequence/pose_clock.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/sequence/scan_range.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
@@ -160,6 +161,18 @@ class Examination {
     if (!mark.disturbed.empty()) remarks.push_back(disturbed_doubt(mark));
   }
 
+  /// Whether the LiDARs of a rig fit is found where it is opened.
+  void note_doubts(const Sequence& sequence, SequenceCheckup& part) {
+    std::vector<std::string> doubts = sequence.recording().doubts;
+    if (sequence.recording().lidars.empty()) {
+      std::ranges::move(doubts, std::back_inserter(part.remarks));
+      return;
+    }
+    for (std::string& doubt : doubts_that_stay(std::move(doubts), sequence)) {
+      checkup_.symptoms.push_back({Severity::kWarning, part.name, std::move(doubt)});
+    }
+  }
+
   /// Opens and checks sequences, of those without poses what needs none.
   void check_opened(const OpenOptions& options, const std::vector<SequenceFolder>& folders) {
     Dataset dataset = open_dataset(path_, options);
@@ -172,8 +185,7 @@ class Examination {
       part.scans = sequence.size();
       part.reading = sequence.reading();
       part.remarks = sequence.remarks();
-      const std::vector<std::string>& doubts = sequence.recording().doubts;
-      part.remarks.insert(part.remarks.end(), doubts.begin(), doubts.end());
+      note_doubts(sequence, part);
       add_mark(mark_as_read(sequence), part.remarks);
       part.labelled_scans = scans_with_truth(sequence).size();
       part.facts = folder_facts_[folders[i].name];
