@@ -12,7 +12,9 @@
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/folder_search.hpp"
 #include "datasets/sequence/ego_points.hpp"
+#include "datasets/sequence/pose_clock.hpp"
 #include "datasets/sequence/pose_source.hpp"
+#include "datasets/sequence/scan_range.hpp"
 #include "datasets/text/errors.hpp"
 
 namespace mosbench {
@@ -30,6 +32,20 @@ std::optional<Pose> tr_of(const std::filesystem::path& folder) {
 /// Returns whether the poses read were turned from the camera of Tr in calib.txt to the lidar.
 bool tr_is_applied(const ReadingDone& reading) { return reading.poses.frame == PoseFrame::kCamera; }
 
+/// Has the clock of poses moved, not their rows, where stamps look them up.
+void advise_offsets(const SequenceCheckup& checkup, std::vector<PoseConvention>& conventions) {
+  const PosesDone& read = checkup.reading.poses;
+  const auto step_s = checkup.facts.number("step_s");
+  if (!read.offset_s || !step_s) return;
+  for (PoseConvention& convention : conventions) {
+    if (convention.rows_later == 0) continue;
+    const double offset_s = read.fitting_offset_s.value_or(
+        mending_offset_s(*read.offset_s, convention.rows_later * *step_s));
+    convention.remedy.pose_offset_s = offset_s;
+    convention.advice = "run with " + option("pose_offset_s", fmt::format("{}", offset_s));
+  }
+}
+
 /// Compares the poses with the motions that scans show.
 void examine_poses(const Sequence& sequence, const std::filesystem::path& folder,
                    SequenceCheckup& checkup) {
@@ -37,7 +53,8 @@ void examine_poses(const Sequence& sequence, const std::filesystem::path& folder
   if (sequence.size() < kFewestScans || checkup.is_partly_turned) return;
   std::vector<Pose> given = poses_of(sequence);
   examine_misplaced_rows(sequence, given, checkup.facts);
-  const auto conventions = other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading));
+  auto conventions = other_conventions(given, tr_of(folder), tr_is_applied(checkup.reading));
+  advise_offsets(checkup, conventions);
   checkup.poses =
       measure_poses(sequence, given, conventions, checkup.facts.number("step_s"), checkup.facts);
 }
@@ -102,7 +119,9 @@ class Examination {
   /// Notes what is no symptom; returns whether anything else is found.
   bool judge(Subject subject, SequenceCheckup& part) {
     Remedy remedy = part.poses ? remedy_of(*part.poses) : Remedy();
-    remedy.pose_offset_s = part.reading.poses.fitting_offset_s;
+    if (const auto fitting_s = part.reading.poses.fitting_offset_s) {
+      remedy.pose_offset_s = fitting_s;
+    }
     bool found = false;
     for (Symptom& symptom : judged(checks(), subject, part.facts, part.name, remedy)) {
       if (symptom.severity == Severity::kNote) {
@@ -142,6 +161,18 @@ class Examination {
     if (!mark.disturbed.empty()) remarks.push_back(disturbed_doubt(mark));
   }
 
+  /// Whether the LiDARs of a rig fit is found where it is opened.
+  void note_doubts(const Sequence& sequence, SequenceCheckup& part) {
+    std::vector<std::string> doubts = sequence.recording().doubts;
+    if (sequence.recording().lidars.empty()) {
+      std::ranges::move(doubts, std::back_inserter(part.remarks));
+      return;
+    }
+    for (std::string& doubt : doubts_that_stay(std::move(doubts), sequence)) {
+      checkup_.symptoms.push_back({Severity::kWarning, part.name, std::move(doubt)});
+    }
+  }
+
   /// Opens and checks sequences, of those without poses what needs none.
   void check_opened(const OpenOptions& options, const std::vector<SequenceFolder>& folders) {
     Dataset dataset = open_dataset(path_, options);
@@ -154,8 +185,7 @@ class Examination {
       part.scans = sequence.size();
       part.reading = sequence.reading();
       part.remarks = sequence.remarks();
-      const std::vector<std::string>& doubts = sequence.recording().doubts;
-      part.remarks.insert(part.remarks.end(), doubts.begin(), doubts.end());
+      note_doubts(sequence, part);
       add_mark(mark_as_read(sequence), part.remarks);
       part.labelled_scans = scans_with_truth(sequence).size();
       part.facts = folder_facts_[folders[i].name];
@@ -191,8 +221,12 @@ class Examination {
   /// Checks the poses, and the labels where nothing speaks against the poses.
   void check_poses(const Sequence& sequence, const std::filesystem::path& folder,
                    SequenceCheckup& part) {
-    bool is_sound = false;
+    // Registration has found these poses, so that it is not asked again.
+    const bool is_found_still =
+        part.reading.poses.source == kStaticPoses && !options_.reading.is_static();
+    bool is_sound = is_found_still;
     attempt(folder, [&] {
+      if (is_found_still) return;
       examine_poses(sequence, folder, part);
       is_sound = part.poses && !judge(Subject::kPoses, part);
       if (!is_sound) return;

@@ -156,10 +156,13 @@ class SceneFlowSequence : public Sequence {
       if (of_flow) {
         refuse(lack, "pose (4, 4) or ego_motion where there is flow");
       }
-      throw MissingPoses(
+      MissingPoses missing(
           file_.path(), lack,
           fmt::format("pose (4, 4) in each group, in a file given by {}, or found by odometry",
                       option("poses")));
+      missing.of_some = std::ranges::any_of(
+          scans_, [](const auto& scan) { return scan.map_from_sensor.has_value(); });
+      throw missing;
     }
   }
 

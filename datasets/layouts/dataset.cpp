@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/formats/mounts_file.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/layouts/convert.hpp"
 #include "datasets/layouts/corrections.hpp"
@@ -16,6 +17,7 @@
 #include "datasets/layouts/layout.hpp"
 #include "datasets/perturb/perturbation.hpp"
 #include "datasets/sequence/pose_mark.hpp"
+#include "datasets/sequence/rig_fit.hpp"
 #include "datasets/sequence/scan_range.hpp"
 #include "datasets/sequence/simulated_origin.hpp"
 #include "datasets/sequence/still_sensor.hpp"
@@ -70,6 +72,14 @@ const Layout& recognise(const std::filesystem::path& path, std::vector<std::stri
       remarks.push_back("recognised as " + std::string(layout->name) + ": " + *why);
       return *layout;
     }
+  }
+  if (const std::string lidars = lidar_folders(path); !lidars.empty()) {
+    throw DataError(
+        path, "holds scans in the folders " + lidars,
+        fmt::format("one of them, {}, or LiDARs of one vehicle, which are merged: {}, with "
+                    "times.txt in each, beside {} with a row for each: {}",
+                    option("lidars", lidars.substr(0, lidars.find(','))), option("lidars", lidars),
+                    kMountsFile, kMountRow));
   }
   throw DataError(
       path, "holds no sequence" + what_is_there(path),
@@ -183,6 +193,12 @@ double moved_m(const Layout& layout, const SequenceFolder& folder, Reading readi
   return most_m;
 }
 
+/// Whether something was asked of poses, which others in their place would not have.
+bool asks_of_poses(const Reading& asked) {
+  return asked.map_frame || asked.pose_topic || asked.pose_frame || asked.pose_direction ||
+         asked.pose_format || asked.pose_offset_s != 0.0;
+}
+
 std::unique_ptr<Sequence> opened(const Layout& layout, const SequenceFolder& folder,
                                  const Reading& reading) {
   Reading unposed = reading;
@@ -195,6 +211,7 @@ std::unique_ptr<Sequence> opened(const Layout& layout, const SequenceFolder& fol
   try {
     return layout.open(folder, reading);
   } catch (const MissingPoses& missing) {
+    if (missing.of_some || asks_of_poses(reading)) throw;
     std::unique_ptr<Sequence> sequence = layout.open(folder, unposed);
     const StillSensor sensor = find_still_sensor(*sequence);
     if (sensor.stands) return with_static_poses(std::move(sequence), sensor.said);
@@ -368,6 +385,9 @@ Dataset open_dataset(const std::filesystem::path& path, const OpenOptions& optio
                        : named_splits(layout, folders);
   for (std::unique_ptr<Sequence>& sequence : dataset.sequences) {
     sequence = corrected(std::move(sequence), options.reading);
+  }
+  if (!options.reading.is_by_odometry()) {
+    for (std::unique_ptr<Sequence>& sequence : dataset.sequences) doubt_mounts(*sequence);
   }
   if (options.reading.drop_scans == Drop::kAuto) keep_left_scans(dataset);
   if (options.reading.perturb) perturb(dataset, options.reading);

@@ -1,5 +1,7 @@
 #include "datasets/layouts/folder_search.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "datasets/disk/files.hpp"
@@ -81,6 +83,16 @@ bool holds_lidars(const std::filesystem::path& folder, const Reading& asked) {
   const std::string first = lidar_names(asked).front();
   // A topic is no folder, though one of its name may be at the root of the disk.
   return !first.starts_with('/') && std::filesystem::is_directory(folder / first);
+}
+
+std::string lidar_folders(const std::filesystem::path& path) {
+  constexpr std::size_t kMostLidars = 6;
+  std::vector<std::string> names;
+  if (!std::filesystem::is_directory(path)) return "";
+  for (const std::filesystem::path& folder : list_folders(path)) {
+    if (!scans_in(folder).empty()) names.push_back(folder_name(folder));
+  }
+  return names.size() > kMostLidars ? "" : fmt::format("{}", fmt::join(names, ","));
 }
 
 std::string recording_without_times(const std::filesystem::path& recording) {

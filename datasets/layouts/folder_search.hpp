@@ -23,6 +23,8 @@ bool is_scan(const std::filesystem::path& path);
 
 /// Whether a folder holds that of the first of the LiDARs that were asked for.
 bool holds_lidars(const std::filesystem::path& folder, const Reading& asked);
+/// Returns the names of folders with scans, as `lidars` takes them; nothing where there is none.
+std::string lidar_folders(const std::filesystem::path& path);
 
 /// Returns the folder that a sequence folder is in.
 std::filesystem::path parent_folder(const std::filesystem::path& path);

@@ -88,7 +88,7 @@ class HeliprSequence : public Sequence {
     const PoseTrack track(std::move(stamped));
     SensorPoses own = own_poses("LiDAR_GT/" + file.filename().string(), file);
     own.files = {file};
-    if (asked.pose_offset_s != 0.0) own.done.offset_s = asked.pose_offset_s;
+    own.done.offset_s = asked.pose_offset_s;
     for (const ScanEntry& scan : recording.scans) {
       auto pose = track.at(*scan.stamp_ns);
       if (static_cast<double>(track.gap_ns(*scan.stamp_ns)) > asked.max_pose_gap_s * 1e9) {

@@ -180,7 +180,7 @@ void BagSequence::open_transforms(const Reading& asked) {
   }
   BagTransforms transforms = bag_transforms(*bag_, asked, frame);
   recording.reading.poses.source = transforms.source;
-  if (asked.pose_offset_s != 0.0) recording.reading.poses.offset_s = asked.pose_offset_s;
+  recording.reading.poses.offset_s = asked.pose_offset_s;
   state_pose_origin(bag_->files().front(), recording.reading.poses, recording.doubts);
   recording.remarks.push_back("poses from the bag: " + transforms.source);
   std::ranges::move(transforms.remarks, std::back_inserter(recording.remarks));

@@ -314,13 +314,18 @@ std::string to_string(const ClockDoubt& doubt) {
                      option("pose_offset_s", fmt::format("{}", *doubt.offset_s)));
 }
 
-void add_clock_doubt(Recording& recording, const ClockDoubt& doubt) {
+void add_clock_doubt(Recording& recording, ClockDoubt doubt) {
+  constexpr double kSame_s = 0.1;
+  std::optional<double>& fitting_s = recording.reading.poses.fitting_offset_s;
+  const bool is_same =
+      fitting_s && doubt.offset_s && std::abs(*fitting_s - *doubt.offset_s) < kSame_s;
+  if (is_same) doubt.offset_s = fitting_s;  // stamps tell it more exactly than surfaces
+  if (doubt.offset_s) fitting_s = doubt.offset_s;
   recording.doubts.push_back(to_string(doubt));
-  if (doubt.offset_s) recording.reading.poses.fitting_offset_s = doubt.offset_s;
 }
 
 double mending_offset_s(double asked_s, double late_s) {
-  return std::round((asked_s - late_s) * 1e3) / 1e3;
+  return std::round((asked_s - late_s) * 1e3) / 1e3 + 0.0;  // without the sign of -0
 }
 
 std::optional<ClockDoubt> doubt_about_clock(const Sequence& sequence, const PoseAt& pose_at) {

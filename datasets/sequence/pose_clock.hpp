@@ -28,8 +28,8 @@ struct ClockDoubt {
 };
 /// Returns the sentence with what mends it, for users.
 std::string to_string(const ClockDoubt& doubt);
-/// Adds it to the doubts of a recording.
-void add_clock_doubt(Recording& recording, const ClockDoubt& doubt);
+/// Adds it to the doubts of a recording. An offset that stamps showed wins over one close to it.
+void add_clock_doubt(Recording& recording, ClockDoubt doubt);
 /// Returns the offset that mends poses that are read by `asked_s` and are `late_s` late.
 double mending_offset_s(double asked_s, double late_s);
 

@@ -131,7 +131,7 @@ class SensorPoseReader {
 
   /// Takes the poses at the stamps of the scans. Only scans that are asked for can lack one.
   void interpolate(const PoseList& list, const std::vector<std::int64_t>& all_ns) {
-    if (asked_.pose_offset_s != 0.0) result_.done.offset_s = asked_.pose_offset_s;
+    result_.done.offset_s = asked_.pose_offset_s;
     const PoseTrack track = track_of(list);
     const ScanRange range = asked_.scans.value_or(ScanRange{});
     std::vector<std::int64_t> stamps_ns;

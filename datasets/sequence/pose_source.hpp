@@ -23,6 +23,7 @@ bool are_too_few(std::size_t posed, std::size_t scans);
 class MissingPoses : public DataError {
  public:
   using DataError::DataError;
+  bool of_some = false;  ///< the others have poses
 };
 
 /// LiDAR poses of the scans of a sequence and where they came from.

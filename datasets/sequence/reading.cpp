@@ -105,7 +105,8 @@ ReadingMembers members_of(const PosesDone& poses) {
   members.add("poses", poses.source);
   if (poses.format) members.add("pose_format", to_string(*poses.format));
   members.add("pose_pairing", poses.pairing);
-  if (poses.offset_s) members.add("pose_offset_s", fmt::format("{}", *poses.offset_s));
+  if (poses.offset_s.value_or(0.0) != 0.0)
+    members.add("pose_offset_s", fmt::format("{}", *poses.offset_s));
   members.add("pose_direction", direction_text(poses));
   members.add("pose_frame", frame_text(poses));
   members.add("pose_origin", poses.origin);

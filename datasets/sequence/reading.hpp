@@ -243,7 +243,8 @@ struct PosesDone {
   std::optional<PoseFrame> frame = std::nullopt;  ///< the camera's were turned into the lidar's
   bool frame_by_mark = false;                     ///< whether a mark beside the file says so
   bool refined = false;                           ///< whether registration corrected them
-  std::optional<double> offset_s = std::nullopt;  ///< added to their stamps
+  /// Added to their stamps; nothing where no stamps look them up.
+  std::optional<double> offset_s = std::nullopt;
   std::optional<double> fitting_offset_s = std::nullopt;  ///< that would fit better
   std::string origin = {};                                ///< of poses that were converted
   std::string odometry = {}, map = {};  ///< its settings, and what its map leaves out

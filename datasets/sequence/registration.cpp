@@ -327,16 +327,17 @@ Registration registered(const RegisteredScan& earlier, const RegisteredScan& lat
   return result;
 }
 
-Pose searched_start(const RegisteredScan& earlier, const RegisteredScan& later) {
+Pose searched_start(const RegisteredScan& earlier, const RegisteredScan& later,
+                    const Pose& around) {
   constexpr double kStepM = 0.5, kReachM = 4.0;
   constexpr std::size_t kEvery = 4;
-  Pose best = Pose::Identity();
+  Pose best = around;
   double best_overlap = 0.0;
   const int reach = static_cast<int>(kReachM / kStepM);
   for (int x = -reach; x <= reach; ++x) {
     for (int y = -reach; y <= reach; ++y) {
-      Pose start = Pose::Identity();
-      start.translation() = Eigen::Vector3d(kStepM * x, kStepM * y, 0.0);
+      Pose start = around;
+      start.pretranslate(Eigen::Vector3d(kStepM * x, kStepM * y, 0.0));
       const double overlap = upright_overlap(earlier, later, start, kEvery, kCoarseM);
       if (overlap <= best_overlap) continue;
       best_overlap = overlap;

@@ -114,7 +114,8 @@ double upright_overlap(const RegisteredScan& earlier, const RegisteredScan& late
 /// Returns the motion near `start` that brings the later scan onto the surfaces of the earlier.
 Registration registered(const RegisteredScan& earlier, const RegisteredScan& later,
                         const Pose& start);
-/// Returns a start for `registered`, found among translations of up to 4 m sideways.
-Pose searched_start(const RegisteredScan& earlier, const RegisteredScan& later);
+/// Returns a start for `registered`, found among translations of `around` by up to 4 m sideways.
+Pose searched_start(const RegisteredScan& earlier, const RegisteredScan& later,
+                    const Pose& around = Pose::Identity());
 
 }  // namespace mosbench

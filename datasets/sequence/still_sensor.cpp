@@ -58,6 +58,7 @@ StillSensor find_still_sensor(const Sequence& sequence) {
   const RegisteredScan first(sequence.read(0).points, size_m);
   const std::vector<std::size_t> some = looked_at(sequence.size());
   double most_m = 0.0, most_deg = 0.0;
+  StillSensor unsure;
   for (const std::size_t k : some) {
     const RegisteredScan scan(sequence.read(k).points, size_m);
     const Registration found = registered(first, scan, Pose::Identity());
@@ -67,16 +68,19 @@ StillSensor find_still_sensor(const Sequence& sequence) {
     const double held_deg =
         kDegOfRad * largest_deviation(found.covariance.bottomRightCorner<3, 3>());
     if (found.overlap < kLeastShared || moved_m > std::max(kStill_m, 3.0 * held_m)) return {};
-    if (moved_m > kStill_m || moved_deg > kStill_deg || held_m > kHeld_m || held_deg > kHeld_deg) {
-      return {false, fmt::format("scan matching cannot tell whether the sensor stands still: scan "
-                                 "{} is held within {:.2f} m and {:.1f} degrees only ({} if it "
-                                 "does)",
-                                 sequence.stem(k), std::max(held_m, moved_m),
-                                 std::max(held_deg, moved_deg), option("poses", kStaticPoses))};
+    const bool is_near = moved_m <= kStill_m && moved_deg <= kStill_deg;
+    const bool is_held = held_m <= kHeld_m && held_deg <= kHeld_deg;
+    if (!(is_near && is_held) && unsure.said.empty()) {
+      unsure.said = fmt::format(
+          "scan matching cannot tell whether the sensor stands still: it has scan {} moved by "
+          "{:.0f} cm and {:.1f} degrees, known to {:.0f} cm and {:.1f} degrees ({} if it stands)",
+          sequence.stem(k), 100.0 * moved_m, moved_deg, 100.0 * held_m, held_deg,
+          option("poses", kStaticPoses));
     }
     most_m = std::max(most_m, moved_m);
     most_deg = std::max(most_deg, moved_deg);
   }
+  if (!unsure.said.empty()) return unsure;
   return {true, fmt::format("no poses: scan matching finds the sensor standing still ({:.1f} cm, "
                             "{:.2f} degrees over {} scans), taken as static",
                             100.0 * most_m, most_deg, some.size() + 1)};

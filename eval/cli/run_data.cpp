@@ -157,9 +157,11 @@ std::vector<std::string> assignments_for(const std::string& method, const Method
   return own;
 }
 
+/// Plans the methods that take the data, and notes the others; throws if there is none.
 std::vector<RunPlan> plan_methods(const JobWords& words, const RunPlace& place,
-                                  const MethodChoice& choice) {
+                                  MethodChoice& choice) {
   std::vector<RunPlan> plans;
+  std::vector<std::string> refusing;
   RunPlace shared = place;
   shared.shared = std::make_shared<SharedReading>();
   for (const std::string& name : choice.names) {
@@ -168,9 +170,17 @@ std::vector<RunPlan> plan_methods(const JobWords& words, const RunPlace& place,
     one.assignments = assignments_for(name, choice, words.assignments);
     try {
       plans.push_back(plan_run(job_of(one), shared));
+    } catch (const RefusedRig&) {
+      refusing.push_back(name);
+      if (refusing.size() == choice.names.size()) throw;
     } catch (const UsageError& error) {
       throw UsageError(fmt::format("method {}: {}", name, error.what()));
     }
+  }
+  if (!refusing.empty()) {
+    choice.notes.push_back(
+        fmt::format("left out: {}, which look from one place, not from several LiDARs",
+                    fmt::join(refusing, ", ")));
   }
   return plans;
 }
@@ -207,18 +217,18 @@ std::vector<MethodRun> execute(const std::vector<RunPlan>& plans) {
   return runs;
 }
 
-std::vector<Sheet> sheets_of(const std::vector<MethodRun>& runs) {
+/// `notes` are on methods that are left out; those on methods that failed are added.
+std::vector<Sheet> sheets_of(const std::vector<MethodRun>& runs, std::vector<std::string> notes) {
   std::vector<Sheet> sheets;
-  std::vector<std::string> failures;
   for (const MethodRun& run : runs) {
     if (run.failure) {
-      failures.push_back(fmt::format("method {} failed: {}", run.plan->settings.method->name,
-                                     run.failure->message));
+      notes.push_back(fmt::format("method {} failed: {}", run.plan->settings.method->name,
+                                  run.failure->message));
     } else {
       sheets.push_back(run_sheet(*run.plan, run.execution->outcomes(), run.curve));
     }
   }
-  if (!failures.empty()) sheets.push_back({.notes = std::move(failures)});
+  if (!notes.empty()) sheets.push_back({.notes = std::move(notes)});
   return sheets;
 }
 
@@ -250,8 +260,7 @@ nlohmann::ordered_json json_of(const MethodRun& run) {
 /// failure.
 Answer run_methods(const JobWords& words, const RunPlace& place,
                    std::span<const std::string> products) {
-  const MethodChoice choice = chosen_methods(*words.method);
-  for (const std::string& note : choice.notes) tell(note);
+  MethodChoice choice = chosen_methods(*words.method);
   const std::vector<RunPlan> plans = plan_methods(words, place, choice);
   std::vector<MethodRun> runs = execute(plans);
   for (MethodRun& run : runs) {
@@ -264,12 +273,14 @@ Answer run_methods(const JobWords& words, const RunPlace& place,
   }
   nlohmann::ordered_json methods = nlohmann::ordered_json::array();
   for (const MethodRun& run : runs) methods.push_back(json_of(run));
+  nlohmann::ordered_json json = {{"methods", methods}};
+  if (!choice.notes.empty()) json["notes"] = choice.notes;
   const auto failed =
       std::ranges::find_if(runs, [](const MethodRun& run) { return run.failure.has_value(); });
   return {.exit_code = failed == runs.end() ? 0 : failed->failure->exit_code,
           .standing = standing_of(runs),
-          .sheets = sheets_of(runs),
-          .json = json_text({{"methods", methods}})};
+          .sheets = sheets_of(runs, choice.notes),
+          .json = json_text(json)};
 }
 
 }  // namespace

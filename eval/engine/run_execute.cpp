@@ -13,6 +13,7 @@
 #include "datasets/doctor/pose_fit.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/sequence/pose_mark.hpp"
+#include "datasets/sequence/rig_fit.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/exec/child_process.hpp"
@@ -89,6 +90,9 @@ Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran
   result.remarks = std::move(ran.remarks);
   result.doubts = doubts_of(sequence);
   std::ranges::move(ran.doubts, std::back_inserter(result.doubts));
+  if (plan.job.segment.is_program() && !sequence.recording().lidars.empty()) {
+    result.doubts.emplace_back("the program is not told at which LiDAR each ray starts");
+  }
   result.remarks = all_remarks(sequence, result);
   result.from.fingerprint = std::move(ran.from.fingerprint);
   result.from.fingerprint_without_poses = std::move(ran.from.fingerprint_without_poses);
@@ -107,7 +111,7 @@ Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran
   return result;
 }
 
-/// What the scans say about poses that were not found by them.
+/// What the scans say about poses that were not found by them, and about mounts by those that were.
 std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence& sequence) {
   std::vector<std::string> doubts;
   const auto add = [&](std::optional<std::string> doubt) {
@@ -115,7 +119,10 @@ std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence&
     tell(fmt::format("{}: {}", sequence.name(), *doubt));
     doubts.push_back(std::move(*doubt));
   };
-  if (plan.odometry) return doubts;
+  if (plan.odometry) {
+    for (std::string& doubt : doubts_about_mounts(sequence)) add(std::move(doubt));
+    return doubts;
+  }
   add(doubt_about_pose_frame(sequence));
   if (doubts.empty()) add(doubt_about_pose_fit(sequence));
   return doubts;

@@ -181,7 +181,7 @@ void check_shared_folder(const RunPlan& plan) {
   }
 }
 
-/// Throws UsageError for a rig and a method that looks from one place.
+/// Throws RefusedRig for a rig and a method that looks from one place.
 void check_origins(const Dataset& dataset, const MethodKind& method) {
   std::vector<std::string_view> others;
   for (const MethodKind& other : methods()) {
@@ -190,7 +190,7 @@ void check_origins(const Dataset& dataset, const MethodKind& method) {
   for (const auto& sequence : dataset.sequences) {
     const std::string& lidars = sequence->reading().lidars;
     if (lidars.empty() || method.takes_origins) continue;
-    throw UsageError(fmt::format(
+    throw RefusedRig(fmt::format(
         "{} looks from one place, not from those of {}, expected one LiDAR, {}, or one of the "
         "methods {}",
         method.name, lidars, option("lidars", "NAME"), fmt::join(others, ", ")));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/thread_pool.hpp"
+#include "datasets/text/errors.hpp"
 #include "eval/engine/pose_finding.hpp"
 #include "eval/engine/sequence_runner.hpp"
 #include "eval/job/job.hpp"
@@ -52,6 +53,12 @@ struct RunPlan {
 /// UsageError and DataError.
 RunPlan open_job(const Job& job, unsigned threads,
                  const std::shared_ptr<SharedReading>& shared = nullptr);
+
+/// A method that looks from one place was asked for several LiDARs.
+class RefusedRig : public UsageError {
+ public:
+  using UsageError::UsageError;
+};
 
 /// The same, and looks at what earlier runs left. Writes nothing. Throws UsageError and DataError.
 RunPlan plan_run(const Job& job, const RunPlace& place);

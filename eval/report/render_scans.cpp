@@ -102,6 +102,14 @@ void check_has_reasons(const ResultScans& scans) {
                   "a run of mosbench run --write scores by a method that says why points move");
 }
 
+/// Throws DataError where no scan can have an error.
+void check_has_truth(const ResultScans& scans, const std::vector<std::size_t>& chosen) {
+  const auto has_truth = [&](std::size_t k) { return scans.rows()[k].counts.has_value(); };
+  if (std::ranges::any_of(chosen, has_truth)) return;
+  throw DataError(scans.result().folder(), "has no truth of the chosen scans",
+                  "scans with labels, around whose errors --show scenes looks");
+}
+
 /// Where the camera looks in one of several pictures.
 std::optional<double> orbit_rad_of(const RenderOptions& options, std::size_t picture,
                                    std::size_t pictures) {
@@ -116,6 +124,7 @@ std::optional<double> orbit_rad_of(const RenderOptions& options, std::size_t pic
 void draw(const RenderOptions& options, const ResultScans& scans,
           const std::vector<std::size_t>& chosen,
           const std::function<void(const std::string& stem, std::string_view png)>& take) {
+  if (options.scenes) check_has_truth(scans, chosen);
   std::vector<std::vector<MovingBox>> boxes;
   if (options.boxes) boxes = boxes_of(scans, chosen);
   const std::vector<double> times_s = times_of_all(scans.sequence());

@@ -49,6 +49,19 @@ TEST_F(Render, ColoursWrongPointsByTheirScenesWhenAskedTo) {
   EXPECT_THAT(both.err, HasSubstr("--show: reasons and scenes both colour points"));
 }
 
+TEST_F(Render, RefusesScenesOfErrorsWithoutTruth) {
+  std::filesystem::remove_all(folder_ / "00/labels");
+  const std::string bare = folder_ / "bare";
+  ASSERT_EQ(cli::run({"run", folder_ / "00", "--out", bare, "--threads", "1"}).exit_code, 0);
+  for (const char* scans : {"1", "1-3"}) {
+    const cli::Answer answer =
+        cli::run({"render", bare, "--scans", scans, "-o", folder_ / "none", "--show", "scenes"});
+    EXPECT_EQ(answer.exit_code, 3) << scans;
+    EXPECT_THAT(answer.err, HasSubstr("has no truth of the chosen scans, expected scans with "));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "none"));
+  }
+}
+
 TEST_F(Render, DrawsTheSameOfLabelsThatWereScored) {
   const std::string net = folder_ / "net";
   ASSERT_EQ(cli::run({"score", folder_ / "00", "--predictions", run(), "--out", net}).exit_code, 0);

@@ -75,6 +75,70 @@ TEST_F(RigInABag, IsRefusedByMethodsThatLookFromOnePlace) {
                     Not(HasSubstr("scan 000"))));
 }
 
+TEST_F(RigInABag, LeavesOutMethodsThatLookFromOnePlaceOfSeveral) {
+  const cli::Answer answer =
+      run({"run", "--out", path("out"), "--method", "yoon,hmm-mos,underwood"});
+  EXPECT_EQ(answer.exit_code, 0) << answer.err;
+  const std::string left_out =
+      "left out: yoon, underwood, which look from one place, not from several LiDARs";
+  EXPECT_THAT(answer.out, AllOf(HasSubstr(left_out), HasSubstr("HMM-MOS, preset recording")));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out/yoon"));
+  const auto json = nlohmann::json::parse(
+      run({"run", "--out", path("out"), "--method", "yoon,hmm-mos,underwood", "--json"}).out);
+  EXPECT_EQ(json.at("notes"), nlohmann::json::array({left_out}));
+  EXPECT_EQ(json.at("methods").size(), 1U);
+  // None is left to run.
+  const cli::Answer none = run({"run", "--out", path("no"), "--method", "yoon,underwood"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("underwood looks from one place"));
+}
+
+TEST_F(RigInABag, IsDoubtedWhereItsLidarsDoNotFit) {
+  drive_.write_folders(folder_, "rig");
+  const auto call = [&](std::vector<std::string> words) {
+    words.insert(words.begin() + 1, {path("rig"), "--read", "lidars=a,b"});
+    return cli::run(words);
+  };
+  const std::string misfit = "b does not fit a: scan matching puts it ";
+  EXPECT_THAT(call({"doctor"}).out, Not(HasSubstr(misfit)));
+  folder_.write("rig/mounts.txt", "a 1 0 0 0 0 0 1\nb -1 0 0 0 0 0.731689 -0.681639\n");
+  const cli::Answer doctor = call({"doctor"});
+  EXPECT_EQ(doctor.exit_code, 1);
+  EXPECT_THAT(doctor.out, HasSubstr("warning: rig: " + misfit));
+  for (const char* odometry : {"", "kiss"}) {
+    std::vector<std::string> words = {"run", "--out", path("out") + odometry};
+    if (*odometry != '\0') words.insert(words.end(), {"--odometry", odometry});
+    ASSERT_EQ(call(words).exit_code, 0);
+    const auto result =
+        nlohmann::json::parse(read_file(path("out") + odometry + "/rig/result.json"));
+    EXPECT_THAT(result.at("doubts").dump(), HasSubstr(misfit)) << odometry;
+  }
+  EXPECT_THAT(call({"score", "--predictions", path("out")}).out, HasSubstr(misfit));
+  const cli::Answer copy = call({"convert", "--layout", "semantickitti", "--out", path("copy")});
+  EXPECT_THAT(copy.out + copy.err, HasSubstr(misfit));
+}
+
+TEST_F(RigInABag, IsDoubtedForAProgramThatLearnsNoOrigins) {
+  const std::string program = std::string("exec:") + MOSBENCH_BINARY_DIR + "/examples/exec_client";
+  const cli::Answer answer = run({"run", "--out", path("out"), "--method", program});
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(read_file(folder_ / "out/drive/result.json"),
+              HasSubstr("the program is not told at which LiDAR each ray starts"));
+}
+
+TEST_F(RigInABag, HasFoldersThatAreNamed) {
+  drive_.write_folders(folder_, "rig");
+  for (const char* command : {"doctor", "run"}) {
+    const cli::Answer answer = cli::run({command, path("rig")});
+    EXPECT_EQ(answer.exit_code, 3);
+    EXPECT_THAT(answer.out + answer.err,
+                HasSubstr("rig: holds scans in the folders a,b, expected one of them, --read "
+                          "lidars=a, or LiDARs of one vehicle, which are merged: --read "
+                          "lidars=a,b, with times.txt in each, beside mounts.txt with a row for "
+                          "each: name tx ty tz qx qy qz qw of vehicle_from_lidar, metres"));
+  }
+}
+
 TEST_F(RigInABag, LosesItsOriginsInACopyWhichSaysSo) {
   const cli::Answer answer = run({"convert", "--layout", "semantickitti", "--out", path("copy")});
   ASSERT_EQ(answer.exit_code, 0) << answer.err;

@@ -9,6 +9,7 @@
 namespace mosbench {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -50,7 +51,18 @@ TEST_F(FixedLidar, IsFoundWithoutPosesAndSaid) {
   EXPECT_EQ(labels, cli::contents(folder_ / "told/08/labels"));
   const auto result = cli::timeless_result(folder_ / "found/08");
   EXPECT_EQ(result.at("reading").at("poses"), "static");
-  EXPECT_THAT(cli::run({"doctor", data}).out, HasSubstr(found));
+  // What scan matching found it is not asked again.
+  EXPECT_THAT(cli::run({"doctor", data}).out, AllOf(HasSubstr(found), Not(HasSubstr("\n  fit "))));
+  EXPECT_THAT(cli::run({"doctor", data, "--poses", "static"}).out, HasSubstr("\n  fit "));
+  // Who asks for something of poses has some.
+  for (const char* asked :
+       {"map_frame=odom", "pose_topic=/odom", "pose_frame=lidar", "pose_direction=map-from-sensor",
+        "pose_format=tum", "pose_offset_s=0.1"}) {
+    const cli::Answer refused =
+        cli::run({"run", data, "--read", asked, "--out", folder_ / "asked"});
+    EXPECT_EQ(refused.exit_code, 3) << asked;
+    EXPECT_THAT(refused.err, HasSubstr("poses.txt: does not exist")) << asked;
+  }
 }
 
 TEST_F(FixedLidar, IsNotFoundWhereTheSensorMoves) {

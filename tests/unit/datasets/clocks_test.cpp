@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -92,6 +93,18 @@ TEST(PoseClock, IsDoubtedWithTheTimeByWhichItIsOff) {
         {-0.7, "poses of 700 ms before", "pose_offset_s 0.7 reads"}}) {
     EXPECT_THAT(RoomDrive(12, false, ahead_s).doubt(), AllOf(HasSubstr(said), HasSubstr(mended)));
   }
+}
+
+TEST(PoseClock, IsMendedByTheOffsetOfStampsAndNotByOneCloseToIt) {
+  for (const auto& [fitted_s, expected_s] : {std::pair{-0.33, -0.3}, {0.1, 0.1}}) {
+    Recording recording;
+    recording.reading.poses.fitting_offset_s = -0.3;
+    add_clock_doubt(recording, {"other clocks", fitted_s});
+    EXPECT_EQ(recording.reading.poses.fitting_offset_s, expected_s);
+    EXPECT_THAT(recording.doubts.at(0), HasSubstr(fmt::format("pose_offset_s {} ", expected_s)));
+  }
+  EXPECT_EQ(fmt::format("{}", mending_offset_s(-0.2, -0.2)), "0");
+  EXPECT_EQ(fmt::format("{}", mending_offset_s(0.0, 0.0001)), "0");
 }
 
 TEST(PoseClock, IsNotDoubtedWhereItFitsOrChangesNothing) {

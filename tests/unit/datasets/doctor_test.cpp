@@ -507,6 +507,38 @@ TEST_P(Doctor, FindsThePlantedFault) {
   EXPECT_EQ(checkup.has(Severity::kError), fault.severity == Severity::kError);
 }
 
+TEST(DoctorOnStampedPoses, HasTheirClockMovedAndNotTheirRows) {
+  const fs::path data = good_copy(kKitti);
+  const Dataset dataset = open_dataset(data, {});
+  const Sequence& sequence = *dataset.sequences.at(0);
+  std::string tum;
+  for (std::size_t k = 0; k < sequence.size(); ++k) {
+    const Pose& pose = sequence.map_from_sensor(k);
+    const Eigen::Vector3d at_m = pose.translation();
+    const Eigen::Quaterniond turn(pose.linear());
+    tum += fmt::format("{:.6f} {} {} {} {} {} {} {}\n",
+                       1e-9 * static_cast<double>(*sequence.stamp_ns(k)) + 0.3, at_m.x(), at_m.y(),
+                       at_m.z(), turn.x(), turn.y(), turn.z(), turn.w());
+  }
+  const TempFolder folder;
+  OpenOptions options;
+  options.reading.poses = PoseFile{folder.write("late.tum", tum)};
+  const Checkup checkup = check_up(data, options);
+  std::string said = all_symptoms(checkup);
+  EXPECT_THAT(said, HasSubstr("the poses fit better as 3 rows later: "));
+  for (const std::string& remark : checkup.sequences.at(0).remarks) said += remark + '\n';
+  EXPECT_THAT(said, testing::Not(HasSubstr("remove the first")));
+  const std::string offset = "pose_offset_s";
+  std::size_t times = 0;
+  for (std::size_t at = said.find(offset); at != said.npos; at = said.find(offset, at + 1)) {
+    const std::string value = said.substr(at + offset.size() + 1);
+    EXPECT_EQ(value.substr(0, value.find_first_of(" ;\n")), "-0.3") << said;
+    ++times;
+  }
+  EXPECT_GE(times, 2U) << said;
+  EXPECT_EQ(checkup.remedy().pose_offset_s, -0.3);
+}
+
 TEST(DoctorOnAnExcerpt, IsQuietAboutFewerScansThanPublished) {
   const TempFolder folder;
   fs::copy(good_copy(kKitti), folder / "data", fs::copy_options::recursive);

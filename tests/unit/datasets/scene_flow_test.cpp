@@ -262,6 +262,7 @@ TEST_F(SceneFlowFile, LeavesOutGroupsThatADriveWasCutAt) {
 
 TEST_F(SceneFlowFile, NeedsNoPosesWhereOthersAreGiven) {
   auto groups = scans();
+  const Hdf5GroupBytes posed = groups[0];
   const auto drop = [&](const std::string& name) {
     for (Hdf5GroupBytes& group : groups) {
       std::erase_if(group.arrays, [&](const auto& array) { return array.first.name == name; });
@@ -278,9 +279,17 @@ TEST_F(SceneFlowFile, NeedsNoPosesWhereOthersAreGiven) {
   EXPECT_EQ(bare->size(), 3u);
   EXPECT_FALSE(bare->has_truth(0));
   EXPECT_EQ(bare->read(0).points.size(), 4u);
-  EXPECT_THAT(message_of<MissingPoses>([&] { open_scene_flow_file("s", write(groups), {}); }),
-              HasSubstr("has no pose, expected pose (4, 4) in each group, in a file given by "
-                        "poses, or found by odometry"));
+  for (const bool of_some : {false, true}) {
+    if (of_some) groups[0].arrays.push_back(posed.arrays.at(1));
+    try {
+      open_scene_flow_file("s", write(groups), {});
+      ADD_FAILURE() << "opened";
+    } catch (const MissingPoses& missing) {
+      EXPECT_THAT(missing.what(), HasSubstr("has no pose, expected pose (4, 4) in each group, in a "
+                                            "file given by poses, or found by odometry"));
+      EXPECT_EQ(missing.of_some, of_some);
+    }
+  }
 }
 
 TEST_F(SceneFlowFile, NamesWhatIsWrong) {

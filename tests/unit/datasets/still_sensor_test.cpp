@@ -92,7 +92,14 @@ TEST(StillSensor, CannotBeToldWhereNothingHoldsTheScansAlongOneDirection) {
   }
   EXPECT_THAT(find_still_sensor(SceneDrive(20, corridor(), stands_at_zero)).said,
               testing::AllOf(HasSubstr("scan matching cannot tell whether the sensor stands still"),
-                             HasSubstr("only (poses static if it does)")));
+                             testing::ContainsRegex("it has scan .* moved by [0-9]+ cm and 0\\.. "
+                                                    "degrees, known to [0-9]+ cm and "),
+                             HasSubstr(" degrees (poses static if it stands)")));
+  // One scan of another place says that it moves, also where the others say nothing.
+  const SceneDrive through(20, {}, stands_at_zero,
+                           [](std::size_t k) { return k == 10 ? street() : corridor(); });
+  EXPECT_FALSE(find_still_sensor(through).stands);
+  EXPECT_EQ(find_still_sensor(through).said, "");
 }
 
 TEST(StillSensor, IsNotLookedForInFewScansOrWithoutPoints) {
