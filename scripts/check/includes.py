@@ -85,7 +85,6 @@ EXTERNAL = {
     "xxhash.h": {"datasets", "eval", "tests"},
     "utf8.h": {"datasets"},
     "nanoflann.hpp": {"eval"},
-    "httplib.h": {"eval/truth/review_server.cpp"},
     "yaml-cpp": {"eval"},
 }
 # In these rooms only the files that print may use JSON: what computes takes and gives types.
