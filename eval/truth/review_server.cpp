@@ -105,8 +105,9 @@ class ReviewServer {
     }
     response.set(http::field::content_type, "application/json");
     if (target == "/tracks") return state();
-    if (target == "/film") return film(track_of(asked));
+    if (target == "/film") return film(asked);
     if (target == "/decide") return decide(asked);
+    if (target == "/make") return make(asked);
     throw Refused{http::status::not_found};
   }
 
@@ -117,8 +118,13 @@ class ReviewServer {
     return *track;
   }
 
-  std::string film(const TruthTrack& track) const {
-    return film_of(*scans_.at(track.sequence), track).dump();
+  std::string film(const ordered_json& asked) {
+    std::unique_lock guard(mutex_);
+    const TruthTrack track = track_of(asked);
+    const std::vector<MadeTrack> made = truth_.made;
+    guard.unlock();  // reading scans takes its time
+    const std::size_t wider = std::clamp<std::size_t>(asked.value("wider", 1U), 1, 16);
+    return film_of(*scans_.at(track.sequence), made, track, wider).dump();
   }
 
   std::string state() {
@@ -126,8 +132,9 @@ class ReviewServer {
     ordered_json tracks = ordered_json::array();
     for (const TruthTrack& track : truth_.tracks) {
       ordered_json& told = tracks.emplace_back();
-      told = {{"id", track.id()},       {"guess", track.moves ? "moving" : "static"},
-              {"points", track.points}, {"scans", track.scans},
+      told = {{"id", track.id()},       {"sequence", track.sequence},
+              {"number", track.number}, {"guess", track.moves ? "moving" : "static"},
+              {"points", track.points}, {"scans", {track.first_scan, track.last_scan}},
               {"doubt", track.doubt},   {"decided", nullptr}};
       const auto decided = truth_.decided.find(track.id());
       if (decided == truth_.decided.end()) continue;
@@ -139,12 +146,23 @@ class ReviewServer {
 
   std::string decide(const ordered_json& asked) {
     const auto decided = std::ranges::find(kDecidedNames, asked.at("decided").get<std::string>());
-    if (decided == kDecidedNames.end()) throw Refused{http::status::bad_request};
+    if (decided == kDecidedNames.end() || *decided == "made") {
+      throw Refused{http::status::bad_request};
+    }
     {
       const std::lock_guard guard(mutex_);
       truth_.decide({track_of(asked).id(), static_cast<Decided>(decided - kDecidedNames.begin())});
     }
     return state();
+  }
+
+  /// Cuts, splits, merges or paints; tells also which track it made.
+  std::string make(const ordered_json& asked) {
+    const std::lock_guard guard(mutex_);
+    const auto scans = scans_.find(asked.at("sequence").get<std::string>());
+    if (scans == scans_.end()) throw Refused{http::status::not_found};
+    const TrackEdit edit = with_points(edit_from(asked), *scans->second, truth_.made);
+    return ordered_json{{"made", truth_.make(scans->first, edit).id()}}.dump();
   }
 
   FolderLock lock_;  // a second server would not know of the decisions of this one

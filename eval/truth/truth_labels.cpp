@@ -8,14 +8,13 @@
 #include "datasets/disk/claim.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/label_file.hpp"
-#include "datasets/formats/point_range.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/result/result_scans.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/truth/completion.hpp"
+#include "eval/truth/truth_scan.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -49,21 +48,19 @@ std::uint32_t id_of(Decided label) {
 }
 
 /// Returns the labels of a scan, and counts them.
-std::vector<std::uint32_t> labels_of_scan(const Frame& frame,
-                                          std::span<const std::uint32_t> objects,
-                                          const LabelsByNumber& tracks, TruthShares& shares) {
+std::vector<std::uint32_t> labels_of_scan(const TruthScan& scan, const LabelsByNumber& tracks,
+                                          TruthShares& shares) {
+  const std::vector<std::uint32_t>& objects = scan.objects;
   std::vector<std::uint32_t> labels(objects.size(), kStaticLabel);
   std::vector<std::uint32_t> part(objects.size(), 0);  // of objects that are completed, from 1
-  std::vector<Eigen::Vector3d> positions_m;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    positions_m.push_back(frame.map_from_sensor * position_of(frame.points[i]));
     if (objects[i] == 0) continue;
     const auto [label, is_by_hand] = tracks.at(objects[i]);
     labels[i] = id_of(label);
     if (label != Decided::kStatic) part[i] = 1 + labels[i];
     ++(is_by_hand ? shares.by_hand : shares.guessed);
   }
-  const std::vector<std::uint32_t> completed = completed_by(positions_m, part);
+  const std::vector<std::uint32_t> completed = completed_by(scan.positions_m, part);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (objects[i] == 0 && completed[i] != 0) {
       labels[i] = completed[i] - 1;
@@ -122,12 +119,10 @@ TruthShares write_sequence(const TruthFolder& truth, const Result& run,
   Claim claim(folder);
   Progress progress(run.sequence.text(), run.scans.size());
   for (std::size_t k = 0; k < run.scans.size(); ++k) {
-    const Frame frame = scans.sequence().read(k);
-    const fs::path file = object_file(run.folder(), frame.stem);
-    const auto objects = read_labels(file, frame.points.size());
-    check_objects(objects, tracks, file);
-    write_labels(claim.path() / (frame.stem + ".label"),
-                 labels_of_scan(frame, objects, tracks, shares));
+    const std::string& stem = run.scans[k].stem;
+    const TruthScan scan = read_truth_scan(scans, truth.made, k);
+    check_objects(scan.objects, tracks, object_file(run.folder(), stem));
+    write_labels(claim.path() / (stem + ".label"), labels_of_scan(scan, tracks, shares));
     progress.advance();
   }
   write_file_atomic(claim.path() / kTruthNote, note_text(truth, shares));

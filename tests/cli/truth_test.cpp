@@ -299,6 +299,53 @@ TEST_F(Truth, ReviewStoresEachDecisionAtOnce) {
   EXPECT_EQ(second.exit_code, 2) << "one server at a time";
 }
 
+TEST_F(Truth, ReviewCutsMergesAndPaintsTracks) {
+  const TempFolder streams;
+  const ReviewServer server(truth(), streams);
+  const std::string whole = box(), number = whole.substr(5);
+  const std::size_t moving = (write(), of_box(kMovingLabel));
+  const auto make = [&](const std::string& takes, nlohmann::json scans, nlohmann::json corners) {
+    return server.get("/make", {{"sequence", "room"},
+                                {"takes", {{takes, 0}}},
+                                {"scans", std::move(scans)},
+                                {"corners_m", std::move(corners)}});
+  };
+  const std::string later = make(number, {13, 4294967295}, nlohmann::json::array()).at("made");
+  server.decide(later, "static");
+  ASSERT_EQ(write().exit_code, 0);
+  const std::size_t before = of_box(kMovingLabel);
+  EXPECT_GT(before, moving / 4);
+  EXPECT_LT(before, 3 * moving / 4);
+  EXPECT_THAT(written(5), testing::Contains(kMovingLabel));
+  EXPECT_THAT(written(13), testing::Not(testing::Contains(kMovingLabel)));
+  EXPECT_THAT(cli::run({"truth", "status", truth()}).out, HasSubstr("1 of them decided"));
+  const auto film = server.get("/film", {{"track", later}});
+  EXPECT_FALSE(film.at("frames").front().at("others").at(number).empty()) << "the earlier part";
+  EXPECT_GT(server.get("/film", {{"track", later}, {"wider", 2}}).at("half_cm"),
+            film.at("half_cm"));
+  // Paint of all the room in one scan: walls, and not the floor, which is most of it.
+  const auto corners = nlohmann::json::parse("[[-90, -90], [90, -90], [90, 90], [-90, 90]]");
+  const std::string painted = make("0", {20, 20}, corners).at("made");
+  server.decide(painted, "moving");
+  ASSERT_EQ(write().exit_code, 0);
+  EXPECT_EQ(std::ranges::count(written(19), kMovingLabel), 0);
+  EXPECT_GT(std::ranges::count(written(20), kMovingLabel), 0);
+  EXPECT_GT(std::ranges::count(written(20), kStaticLabel), 0);
+  EXPECT_THAT(server.decide(later, "unmade"), HasSubstr("unmakes"));
+  EXPECT_THAT(server.decide(painted, "unmade"), HasSubstr(" 200 "));
+  EXPECT_THAT(server.decide(later, "unmade"), HasSubstr(" 200 "));
+  ASSERT_EQ(write().exit_code, 0);
+  EXPECT_EQ(of_box(kMovingLabel), moving) << "as if nothing had been made";
+  EXPECT_THAT(server.decide(later, "moving"), HasSubstr(" 404 "));
+  EXPECT_THAT(server.decide(whole, "made"), HasSubstr(" 400 "));
+  const nlohmann::json far = {
+      {"sequence", "room"}, {"takes", {{number, 0}}}, {"corners_m", nlohmann::json::array()}};
+  nlohmann::json beyond = far;
+  beyond["scans"] = {900, 901};
+  EXPECT_THAT(server.post("/make", beyond), HasSubstr("request: holds no points"));
+  EXPECT_THAT(server.post("/make", far), HasSubstr(" 500 "));
+}
+
 TEST_F(Truth, ReviewAnswersNobodyWithoutTheToken) {
   const TempFolder streams;
   const ReviewServer server(truth(), streams);
