@@ -28,6 +28,11 @@ std::string doubt_of_note(const std::filesystem::path& file) {
 
 }  // namespace
 
+bool has_unsure_truth(const Recording& recording) {
+  const std::vector<std::filesystem::path>& files = recording.truth_files;
+  return !files.empty() && is_there(files.front().parent_path() / kTruthNote);
+}
+
 KittiSequence::KittiSequence(std::string name, const std::filesystem::path& folder,
                              const Reading& asked, const SequenceLayout& layout)
     : FolderSequence(std::move(name), folder, asked, layout.folder), layout_(layout) {

@@ -14,6 +14,9 @@ namespace mosbench {
 /// Beside labels that `mosbench truth write` wrote: where they come from.
 inline constexpr const char* kTruthNote = "truth.json";
 
+/// Returns whether the note lies beside the truth: points of id 0 are unsure there.
+bool has_unsure_truth(const Recording& recording);
+
 /// Where a layout keeps what belongs to a sequence, and how its labels are written.
 struct SequenceLayout {
   FolderLayout folder = {};

@@ -152,6 +152,23 @@ TEST_F(Truth, IsTruthOfTheDriveForRunAndScore) {
   const cli::Answer score =
       cli::run({"score", (folder_ / "room").string(), "--predictions", (folder_ / "run").string()});
   EXPECT_THAT(score.out, HasSubstr("truth: 1 decision, 0.0 % unsure"));
+  decide(box(), "unsure");
+  ASSERT_EQ(write().exit_code, 0);
+  std::filesystem::remove_all(folder_ / "room/labels");
+  std::filesystem::rename(folder_ / "own/room/labels", folder_ / "room/labels");
+  // The run calls the box moving: that may be all wrong, or all right.
+  const std::string open = "unsure points leave 0.0 to 100.0 % IoU open, by mapmos";
+  for (const char* as : {"text", "json"}) {
+    const cli::Answer again =
+        cli::run({"score", (folder_ / "room").string(), "--predictions", (folder_ / "run").string(),
+                  "--protocol", "mapmos", "--as", as});
+    EXPECT_THAT(again.out, HasSubstr(open)) << again.err;
+  }
+  const cli::Answer rerun =
+      cli::run({"run", (folder_ / "room").string(), "--preset", "offline", "--protocol", "mapmos",
+                "--out", (folder_ / "rerun").string()});
+  EXPECT_THAT(rerun.out, HasSubstr(open)) << rerun.err;
+  EXPECT_THAT(cli::run({"rank", (folder_ / "rerun").string()}).out, HasSubstr(open));
   write_file_atomic(folder_ / "room/labels/truth.json", "{}");
   const cli::Answer broken = cli::run({"convert", (folder_ / "room").string(), "--check"});
   EXPECT_EQ(broken.exit_code, 3);
