@@ -123,9 +123,10 @@ test('a cut, a split and a merge by keys alone, each taken back', async (t) => {
   const server = await serve(t);
   const page = await open(t, server.address);
   const whole = await showLongest(page);
+  await press(page, 'Space');
+  await page.evaluate(() => { mosbenchReview.film.frame = 0; });
   await press(page, 'c');
   assert.match(await page.textContent('#fault'), /a cut needs a later scan/);
-  await press(page, 'Space');
   for (let i = 0; i < 15; i += 1) await press(page, '.');
   await press(page, 'c');
   const later = await shown(page);
@@ -137,20 +138,32 @@ test('a cut, a split and a merge by keys alone, each taken back', async (t) => {
   assert.deepEqual(await shown(page), whole);
   assert.equal(stored().at(-1).decided, 'unmade');
 
-  // A polygon around half of the picture: the cursor begins in the middle of the way.
-  await press(page, 'Space');
+  // A polygon around the left half of the picture, over all scans: the cursor begins in the middle of the way.
+  await page.fill('#scans', '99');
+  await page.locator('#scans').blur();
   await press(page, 'x');
   assert.match(await page.textContent('#hint'), /polygon/);
   await press(page, 'x');
   assert.match(await page.textContent('#fault'), /three corners/);
-  const far = async (key) => { for (let i = 0; i < 8; i += 1) await press(page, `Shift+${key}`); };
-  for (const way of [['ArrowUp'], ['ArrowLeft'], ['ArrowDown', 'ArrowDown'], ['ArrowRight']]) {
-    for (const key of way) await far(key);
+  const corner = async (key, times) => {
+    for (let i = 0; i < times; i += 1) await page.keyboard.press(`Shift+${key}`);
     await press(page, 'Enter');
-  }
-  assert.equal(await page.evaluate(() => mosbenchReview.drawing().corners.length), 4);
+  };
+  await corner('ArrowUp', 8);
+  await corner('ArrowLeft', 8);
+  await corner('ArrowDown', 16);
   await press(page, 'Backspace');
-  assert.equal(await page.evaluate(() => mosbenchReview.drawing().corners.length), 3);
+  assert.equal(await page.evaluate(() => mosbenchReview.drawing().corners.length), 2);
+  await press(page, 'Enter');
+  await corner('ArrowRight', 8);
+  await press(page, 'x');
+  assert.equal(await page.textContent('#fault'), '');
+  const left = await shown(page);
+  assert.equal(stored().at(-1).takes[whole.number], left.points);
+  assert.ok(left.points > 0 && left.points < whole.points);
+  await press(page, 'z');
+  assert.deepEqual(await shown(page), whole);
+  await press(page, 'p');
   await press(page, 'Escape');
   assert.equal(await page.evaluate(() => mosbenchReview.drawing()), null);
   refuseComplaints(page);

@@ -163,9 +163,10 @@ function redraw() {
   film.draw(drawing);
   space.show(film.now());
   byId('hint').textContent = HINTS[drawing?.kind] ?? '';
+  document.querySelector('[data-key=Escape]').hidden = !drawing;
 }
 
-function onKey(event) {
+document.addEventListener('keydown', (event) => {
   if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest('input')) return;
   const { key, shiftKey } = event;
   const arrow = { ArrowLeft: 'b', ArrowRight: 'l' }[key];
@@ -173,9 +174,7 @@ function onKey(event) {
   if (!action || (event.target.closest('button') && [' ', 'Enter'].includes(key))) return;
   event.preventDefault();
   enqueue(() => (shown ? action() : null));
-}
-
-document.addEventListener('keydown', onKey);
+});
 for (const button of document.querySelectorAll('button')) {
   button.addEventListener('click', () => {
     button.blur(); // or the space bar would press it again
