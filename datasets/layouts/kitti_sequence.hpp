@@ -42,7 +42,6 @@ class KittiSequence : public FolderSequence {
  private:
   void pair_labels();
   void remark_on_labels(std::size_t labelled);
-  void check_same_points(std::size_t scan_index) const;
 
   SequenceLayout layout_;
   std::filesystem::path label_folder_;              ///< empty when the labels are in the scans

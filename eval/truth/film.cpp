@@ -7,7 +7,7 @@
 namespace mosbench {
 namespace {
 
-constexpr std::size_t kMostFrames = 40, kScansAround = 5, kMostPoints = 3000;
+constexpr std::size_t kMostFrames = 40, kScansAround = 5, kMostPoints = 3000, kMostOfOther = 600;
 constexpr double kLeastHalf_m = 8, kMargin_m = 4;
 
 struct FilmScan {
@@ -80,7 +80,7 @@ nlohmann::ordered_json film_of(const ResultScans& scans, std::span<const MadeTra
     frame["others"] = nlohmann::ordered_json::object();
     for (const auto& [number, points_m] : scan.points_m) {
       if (number == 0 || number == track.number) continue;
-      auto other = centimetres(points_m, middle_m, half_m, kMostPoints);
+      auto other = centimetres(points_m, middle_m, half_m, kMostOfOther);
       if (!other.empty()) frame["others"][std::to_string(number)] = std::move(other);
     }
   }

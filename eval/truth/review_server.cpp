@@ -151,7 +151,8 @@ class ReviewServer {
     }
     {
       const std::lock_guard guard(mutex_);
-      truth_.decide({track_of(asked).id(), static_cast<Decided>(decided - kDecidedNames.begin())});
+      truth_.decide(std::vector<Decision>{
+          {track_of(asked).id(), static_cast<Decided>(decided - kDecidedNames.begin())}});
     }
     return state();
   }

@@ -35,9 +35,9 @@ std::vector<const TruthTrack*> TruthFolder::contradicted() const {
   return found;
 }
 
-void TruthFolder::decide(const Decision& decision) {
+void TruthFolder::decide(std::span<const Decision> more) {
   std::vector<Decision> all = read_decisions(path);
-  all.push_back(decision);
+  std::ranges::copy(more, std::back_inserter(all));
   std::vector<Decision> before = decisions;
   take(std::move(all));
   try {
@@ -50,7 +50,7 @@ void TruthFolder::decide(const Decision& decision) {
 
 const TruthTrack& TruthFolder::make(const std::string& sequence, TrackEdit edit) {
   TruthTrack next{.sequence = sequence, .number = new_number(proposed, decisions, sequence)};
-  decide({next.id(), Decided::kMade, std::move(edit)});
+  decide(std::vector<Decision>{{next.id(), Decided::kMade, std::move(edit)}});
   return *std::ranges::find(tracks, next.id(), &TruthTrack::id);
 }
 

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,8 @@ struct TruthFolder {
   std::vector<TruthTrack> undecided() const;
   /// The tracks that are decided against more than 0.8 of the looks: a wrong key, most likely.
   std::vector<const TruthTrack*> contradicted() const;
-  /// Stores a decision behind those in the file by now. It is on the disk then. Throws DataError.
-  void decide(const Decision& decision);
+  /// Stores decisions behind those in the file by now. They are on the disk then. Throws DataError.
+  void decide(std::span<const Decision> more);
   /// Stores an edit of a sequence and returns the new track. Throws DataError.
   const TruthTrack& make(const std::string& sequence, TrackEdit edit);
 

@@ -3,15 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "datasets/disk/claim.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/label_file.hpp"
+#include "datasets/formats/label_formats.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
+#include "eval/protocols/protocol.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/truth/completion.hpp"
 #include "eval/truth/truth_scan.hpp"
@@ -130,7 +134,88 @@ TruthShares write_sequence(const TruthFolder& truth, const Result& run,
   return shares;
 }
 
+fs::path corrected_file(const fs::path& folder, const std::string& stem) {
+  for (const std::string_view extension : kLabelExtensions) {
+    if (fs::path file = folder / (stem + std::string(extension)); is_there(file)) return file;
+  }
+  throw DataError(folder, "has no labels of scan " + stem, "a file of them for each scan");
+}
+
+/// Returns what somebody says of each point of a scan.
+std::vector<Decided> corrected_scan(const ResultScans& scans, std::size_t k,
+                                    const fs::path& folder) {
+  static const LabelTable classes(protocol_named("mapmos").truth);
+  const Frame frame = scans.sequence().read(k);
+  const fs::path file = corrected_file(folder, frame.stem);
+  if (tells_points(file)) check_same_points(file, frame.points, "scan " + frame.stem);
+  std::vector<Decided> said;
+  for (const std::uint32_t label : read_any_labels(file, frame.points.size())) {
+    const TruthClass is = classes[label];
+    said.push_back(is == TruthClass::kIgnored  ? Decided::kUnsure
+                   : is == TruthClass::kMoving ? Decided::kMoving
+                                               : Decided::kStatic);
+  }
+  return said;
+}
+
+/// Calls `accept` with each scan and what somebody says of its points.
+template <typename Accept>
+void for_corrected(const TruthFolder& truth, const ResultScans& scans, const fs::path& corrected,
+                   Accept&& accept) {
+  const fs::path folder = corrected / scans.result().sequence.folder() / "labels";
+  for (std::size_t k = 0; k < scans.rows().size(); ++k) {
+    accept(read_truth_scan(scans, truth.made, k), corrected_scan(scans, k, folder));
+  }
+}
+
+/// Returns the decisions that most points of a track ask for.
+std::vector<Decision> decisions_by(const TruthFolder& truth, const ResultScans& scans,
+                                   const fs::path& corrected) {
+  std::map<std::uint32_t, std::map<Decided, std::size_t>> points;
+  for_corrected(truth, scans, corrected,
+                [&](const TruthScan& scan, const std::vector<Decided>& said) {
+                  for (std::size_t i = 0; i < said.size(); ++i) ++points[scan.objects[i]][said[i]];
+                });
+  const LabelsByNumber before = labels_of_tracks(truth, scans.result().sequence.text());
+  std::vector<Decision> decisions;
+  for (const TruthTrack& track : truth.tracks) {
+    if (track.sequence != scans.result().sequence.text()) continue;
+    const Decided now = before.at(track.number).label;
+    for (const auto& [decided, count] : points[track.number]) {
+      if (2 * count > track.points && decided != now) decisions.push_back({track.id(), decided});
+    }
+  }
+  return decisions;
+}
+
 }  // namespace
+
+TruthImport import_truth(TruthFolder& truth, const std::optional<fs::path>& data,
+                         const fs::path& corrected) {
+  TruthImport imported;
+  std::vector<std::unique_ptr<ResultScans>> opened;
+  std::vector<Decision> decisions;
+  for (const Result& run : truth.runs) {
+    opened.push_back(std::make_unique<ResultScans>(run, data));
+    std::ranges::move(decisions_by(truth, *opened.back(), corrected),
+                      std::back_inserter(decisions));
+  }
+  if (!decisions.empty()) truth.decide(decisions);
+  imported.decisions = decisions.size();
+  for (const auto& scans : opened) {
+    const LabelsByNumber tracks = labels_of_tracks(truth, scans->result().sequence.text());
+    TruthShares shares;
+    for_corrected(truth, *scans, corrected,
+                  [&](const TruthScan& scan, const std::vector<Decided>& said) {
+                    const auto labels = labels_of_scan(scan, tracks, shares);
+                    for (std::size_t i = 0; i < said.size(); ++i) {
+                      if (labels[i] != id_of(said[i])) ++imported.still_differ;
+                    }
+                  });
+    imported.points += shares.points;
+  }
+  return imported;
+}
 
 std::vector<TruthShares> write_truth(const TruthFolder& truth, const std::optional<fs::path>& data,
                                      const fs::path& out) {
