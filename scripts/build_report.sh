@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# build_report.sh [--check]: makes eval/report/page/page.html and study.html, which `mosbench report` and `study` fill in,
+# build_report.sh [--check]: makes eval/report/page/page.html, study.html and review.html, which `mosbench` fills in or serves,
 # from eval/report/page/src. Run it after a change there; building mosbench takes the file as it is and
 # needs no node. With --check it writes nothing, and ends with exit code 1 when the file differs from what
 # src makes, or when the linter or a unit test of the page complains.

@@ -16,7 +16,7 @@ set -euo pipefail
 packages=(g++ cmake ninja-build pkg-config xz-utils jq bsdextrautils python3
   libeigen3-dev libfmt-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libutfcpp-dev libyaml-cpp-dev
   zlib1g-dev libpng-dev libbz2-dev liblz4-dev libzstd-dev libsqlite3-dev libexpat1-dev libboost-dev
-  libnanoflann-dev libcpp-httplib-dev)
+  libnanoflann-dev)
 [ "${MOSBENCH_BUILD_TESTS:-ON}" = OFF ] || packages+=(git libgtest-dev libgmock-dev libbenchmark-dev help2man)
 [ "${MOSBENCH_WITH_PCL:-ON}" = OFF ] || packages+=(libpcl-dev)
 [ "${MOSBENCH_WITH_ROSBAG:-ON}" = OFF ] || packages+=(librosbag-storage-dev)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -54,31 +55,7 @@ void refuse_classes(const std::vector<std::uint32_t>& labels, const fs::path& fi
                   "in a .csv file");
 }
 
-}  // namespace
-
-std::vector<std::uint32_t> read_cloud_labels(const fs::path& file) {
-  const auto parse = file.extension() == ".ply" ? parse_ply_labels : parse_pcd_labels;
-  return parse(read_file(file), file);
-}
-
-std::vector<std::uint32_t> read_any_labels(const fs::path& file, std::size_t point_count) {
-  const fs::path extension = file.extension();
-  if (extension == ".label") return read_labels(file, point_count);
-  std::vector<std::uint32_t> labels;
-  if (extension == ".csv") {
-    labels = parse_point_csv(read_file(file), point_count, file);
-  } else if (is_named_as_scan(file)) {
-    labels = read_cloud_labels(file);
-  } else {
-    std::string bytes = read_file(file);
-    if (extension == ".npz") bytes = labels_in_npz(bytes, file);
-    labels = labels_of(parse_npy(bytes, file), file);
-  }
-  check_label_count(labels.size(), point_count, file);
-  refuse_classes(labels, file);
-  return labels;
-}
-
+/// Nothing where it does not say it.
 std::vector<Point> points_of_labels(const fs::path& file) {
   if (is_named_as_scan(file)) return read_scan(file);
   if (file.extension() != ".csv") return {};
@@ -107,6 +84,48 @@ std::vector<Point> points_of_labels(const fs::path& file) {
     points.push_back({at[0], at[1], at[2], 0.0F});
   }
   return points;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> read_cloud_labels(const fs::path& file) {
+  const auto parse = file.extension() == ".ply" ? parse_ply_labels : parse_pcd_labels;
+  return parse(read_file(file), file);
+}
+
+std::vector<std::uint32_t> read_any_labels(const fs::path& file, std::size_t point_count) {
+  const fs::path extension = file.extension();
+  if (extension == ".label") return read_labels(file, point_count);
+  std::vector<std::uint32_t> labels;
+  if (extension == ".csv") {
+    labels = parse_point_csv(read_file(file), point_count, file);
+  } else if (is_named_as_scan(file)) {
+    labels = read_cloud_labels(file);
+  } else {
+    std::string bytes = read_file(file);
+    if (extension == ".npz") bytes = labels_in_npz(bytes, file);
+    labels = labels_of(parse_npy(bytes, file), file);
+  }
+  check_label_count(labels.size(), point_count, file);
+  refuse_classes(labels, file);
+  return labels;
+}
+
+bool tells_points(const fs::path& file) {
+  return file.extension() == ".csv" || is_named_as_scan(file);
+}
+
+void check_same_points(const fs::path& file, std::span<const Point> scan,
+                       const std::string& scan_name) {
+  constexpr float kSame_m = 0.01F;  // clouds are written with a few digits
+  const std::vector<Point> labelled = points_of_labels(file);
+  for (std::size_t i = 0; i < std::min(scan.size(), labelled.size()); ++i) {
+    const Eigen::Vector3f at(scan[i].x, scan[i].y, scan[i].z);
+    const Eigen::Vector3f other(labelled[i].x, labelled[i].y, labelled[i].z);
+    if (!at.allFinite() || !((at - other).cwiseAbs().maxCoeff() > kSame_m)) continue;
+    throw DataError(file, fmt::format("point {} is not where it is in the scan", i),
+                    "the points of " + scan_name + ", in their order and frame");
+  }
 }
 
 void check_labels_fit(const fs::path& file, std::size_t point_count) {

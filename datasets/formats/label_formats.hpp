@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <mosbench/scan.hpp>
+#include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -22,9 +24,13 @@ std::vector<std::uint32_t> read_any_labels(const std::filesystem::path& file,
 /// Reads the labels of a .pcd or .ply cloud. Throws DataError, also when it has none.
 std::vector<std::uint32_t> read_cloud_labels(const std::filesystem::path& file);
 
-/// Returns where a file of labels says that its points are: a cloud, or a .csv file with columns x,
-/// y and z; else nothing. Throws DataError.
-std::vector<Point> points_of_labels(const std::filesystem::path& file);
+/// Returns whether a file of labels may say where its points are: a cloud, or a .csv file.
+bool tells_points(const std::filesystem::path& file);
+
+/// Throws DataError where a file of labels says, in the columns x, y and z, that its points are not
+/// those of the scan of this name: in another order it would label the wrong ones.
+void check_same_points(const std::filesystem::path& file, std::span<const Point> scan,
+                       const std::string& scan_name);
 
 /// Throws DataError where the size or the header of a file shows that it does not fit its scan.
 void check_labels_fit(const std::filesystem::path& file, std::size_t point_count);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <unordered_map>
@@ -27,6 +26,11 @@ std::string doubt_of_note(const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+bool has_unsure_truth(const Recording& recording) {
+  const std::vector<std::filesystem::path>& files = recording.truth_files;
+  return !files.empty() && is_there(files.front().parent_path() / kTruthNote);
+}
 
 KittiSequence::KittiSequence(std::string name, const std::filesystem::path& folder,
                              const Reading& asked, const SequenceLayout& layout)
@@ -75,27 +79,13 @@ void KittiSequence::pair_labels() {
   if (is_there(note)) recording.doubts.push_back(doubt_of_note(note));
 }
 
-/// A labelled cloud with its points in another order would label the wrong ones.
-void KittiSequence::check_same_points(std::size_t scan_index) const {
-  constexpr float kSame_m = 0.01F;  // clouds are written with a few digits
-  const std::filesystem::path& file = label_files_[scan_index];
-  if (file.extension() != ".csv" && !is_named_as_scan(file)) return;
-  const std::vector<Point> scan = read_points(scan_index), labelled = points_of_labels(file);
-  for (std::size_t i = 0; i < std::min(scan.size(), labelled.size()); ++i) {
-    const Eigen::Vector3f at(scan[i].x, scan[i].y, scan[i].z);
-    const Eigen::Vector3f other(labelled[i].x, labelled[i].y, labelled[i].z);
-    if (!at.allFinite() || !((at - other).cwiseAbs().maxCoeff() > kSame_m)) continue;
-    throw DataError(file, fmt::format("point {} is not where it is in the scan", i),
-                    "the points of " + scan_file(scan_index)->filename().string() +
-                        ", in their order and frame");
-  }
-}
-
 std::vector<std::uint32_t> KittiSequence::read_truth(std::size_t scan_index) const {
   if (label_folder_.empty()) return FolderSequence::read_truth(scan_index);
   if (!has_truth(scan_index)) refuse_truth(scan_index);
   const std::filesystem::path& file = label_files_[scan_index];
-  check_same_points(scan_index);
+  if (tells_points(file)) {
+    check_same_points(file, read_points(scan_index), scan_file(scan_index)->filename().string());
+  }
   return layout_.read_labels(file, point_count(scan_index));
 }
 

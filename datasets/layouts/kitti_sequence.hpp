@@ -14,6 +14,9 @@ namespace mosbench {
 /// Beside labels that `mosbench truth write` wrote: where they come from.
 inline constexpr const char* kTruthNote = "truth.json";
 
+/// Returns whether the note lies beside the truth: points of id 0 are unsure there.
+bool has_unsure_truth(const Recording& recording);
+
 /// Where a layout keeps what belongs to a sequence, and how its labels are written.
 struct SequenceLayout {
   FolderLayout folder = {};
@@ -39,7 +42,6 @@ class KittiSequence : public FolderSequence {
  private:
   void pair_labels();
   void remark_on_labels(std::size_t labelled);
-  void check_same_points(std::size_t scan_index) const;
 
   SequenceLayout layout_;
   std::filesystem::path label_folder_;              ///< empty when the labels are in the scans

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "core/base/thread_pool.hpp"
+#include "datasets/disk/claim.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -118,11 +119,25 @@ Answer write_answer(const TruthFlags& flags) {
   return {.standing = standing_of(ResultSet{truth.path, truth.runs}), .sheets = {sheet}};
 }
 
+Answer import_answer(const TruthFlags& flags) {
+  if (!flags.out) throw UsageError("-o: is missing, expected the folder of the tracks");
+  const FolderLock lock(*flags.out);  // a page that is open would not know of these decisions
+  TruthFolder truth = open_truth(*flags.out);
+  const TruthImport imported = import_truth(truth, flags.data, flags.input);
+  Answer answer = status_answer(*flags.out);
+  answer.sheets.front().notes.push_back(fmt::format(
+      "{} by the labels in {}; {} of {} still differ{}", counted(imported.decisions, "decision"),
+      flags.input.string(), imported.still_differ, counted(imported.points, "point"),
+      imported.still_differ > 0 ? ": cut, split or paint tracks by mosbench truth review" : ""));
+  return answer;
+}
+
 Answer truth_answer(const TruthFlags& flags, const CLI::App& command) {
   if (flags.action == "propose") return propose(flags);
   constexpr std::array kOfTruth = {"--data", "--as", "--json"};
   const std::string given = given_words(command, [&](const CLI::Option& option) {
-    if (flags.action == "write" && option.check_lname("out")) return false;
+    if ((flags.action == "write" || flags.action == "import") && option.check_lname("out"))
+      return false;
     return option.nonpositional() &&
            std::ranges::find(kOfTruth, option.get_name()) == kOfTruth.end();
   });
@@ -131,6 +146,7 @@ Answer truth_answer(const TruthFlags& flags, const CLI::App& command) {
                                  given.substr(1), flags.action));
   }
   if (flags.action == "write") return write_answer(flags);
+  if (flags.action == "import") return import_answer(flags);
   if (flags.action == "status") return status_answer(flags.input);
   serve_review(flags.input, flags.data, [](const std::string& address) {
     tell(fmt::format("open {} in a browser; Ctrl-C ends, decisions are stored at once", address));
@@ -143,15 +159,15 @@ Answer truth_answer(const TruthFlags& flags, const CLI::App& command) {
 CommandRun add_truth(CLI::App& command) {
   auto flags = std::make_shared<TruthFlags>();
   add(command, "ACTION", flags->action,
-      "propose tracks of DRIVE; review them in a browser, tell the status of TRUTH, or write its "
-      "labels")
+      "propose tracks of DRIVE; review them in a browser, tell the status of TRUTH, write its "
+      "labels, or import corrected ones")
       ->required()
-      ->check(CLI::IsMember({"propose", "review", "status", "write"}));
+      ->check(CLI::IsMember({"propose", "review", "status", "write", "import"}));
   add_dataset_flags(command, *flags, "DRIVE");
   add(command, "-o,--out DIR", flags->out,
-      "Folder to write: of propose TRUTH, of write <sequence>/labels");
+      "Folder to write: of propose and import TRUTH, of write <sequence>/labels");
   add(command, "--data DIR", flags->data,
-      "Of review and write: folder of the drive, where it was moved");
+      "Of review, write and import: folder of the drive, where it was moved");
   add_odometry_flag(command, flags->odometry, "Find the poses by it instead of reading them");
   add_threads_flag(command, flags->threads);
   return [flags, &command] { return truth_answer(*flags, command); };

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "core/base/thread_pool.hpp"
+#include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -93,7 +94,7 @@ Frame frame_to_score(const Sequence& sequence, std::size_t k, const ScoreTask& t
 /// One row per rule.
 std::vector<ScanRow> score_one(const Frame& frame, const std::string& stem, std::size_t k,
                                const ScoreTask& task, const Predictions& labels,
-                               std::span<const double> confidences) {
+                               std::span<const double> confidences, UnsureBounds* unsure) {
   const std::optional<Confusion> counted = labels.counts(k);
   const std::vector<std::uint32_t> predicted =
       counted ? std::vector<std::uint32_t>{} : labels.labels(k, confidences);
@@ -110,6 +111,7 @@ std::vector<ScanRow> score_one(const Frame& frame, const std::string& stem, std:
                 : score_scan(*rule.protocol, *frame.truth, predicted, frame.points, rule.range);
     row.predicted_moving_points = row.counts->tp + row.counts->fp;
   }
+  if (unsure && !counted) unsure->add(task.rules.front(), *frame.truth, predicted, frame.points);
   return rows;
 }
 
@@ -131,20 +133,23 @@ void score_scans(const Sequence& sequence, const std::vector<std::size_t>& scans
                  const ScoreTask& task, ThreadPool& pool, SequenceScores& scores) {
   for (auto& rows : scores.by_rule) rows.resize(scans.size());
   Progress progress("score " + sequence.name(), scans.size());
+  const bool is_unsure = has_unsure_truth(sequence.recording());
   std::mutex progress_mutex;
   pool.for_ranges(scans.size(), 1, [&](std::size_t begin, std::size_t end, unsigned) {
     for (std::size_t i = begin; i < end; ++i) {
       const Predictions& labels = *scores.opened->labels;
       const Frame frame = frame_to_score(sequence, scans[i], task);
       const std::vector<double> confidences = labels.confidences(scans[i]);
-      std::vector<ScanRow> rows =
-          score_one(frame, sequence.stem(scans[i]), scans[i], task, labels, confidences);
+      UnsureBounds unsure;
+      std::vector<ScanRow> rows = score_one(frame, sequence.stem(scans[i]), scans[i], task, labels,
+                                            confidences, is_unsure ? &unsure : nullptr);
       ScoreCounts counts;
       if (!confidences.empty()) {
         counts.add({*frame.truth, confidences, frame.points, *rows.front().counts},
                    task.rules.front());
       }
       const std::lock_guard lock(progress_mutex);
+      scores.unsure += unsure;
       if (!confidences.empty()) {
         if (!scores.confidences) scores.confidences.emplace();
         *scores.confidences += counts;
@@ -164,6 +169,8 @@ void add_doubts(const Sequence& sequence, const std::vector<std::size_t>& scans,
   const std::string remark = strange_share(all.tp + all.fp, all.points() - all.ignored,
                                            opened.labels->ids(), *rule.protocol);
   if (!remark.empty()) opened.doubts.push_back(remark);
+  const std::string open = scores.unsure.text(rule);
+  if (!open.empty()) opened.doubts.push_back(open);
   if (opened.format == PredictionFormat::kDynabloxScores) return;
   const std::string shift = shift_remark(sequence, scans, *opened.labels, rule);
   if (!shift.empty()) opened.doubts.push_back(shift);

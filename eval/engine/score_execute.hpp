@@ -10,6 +10,7 @@
 #include "datasets/sequence/sequence.hpp"
 #include "eval/predictions/predictions.hpp"
 #include "eval/protocols/score_counts.hpp"
+#include "eval/protocols/unsure.hpp"
 #include "eval/result/result.hpp"
 
 namespace mosbench {
@@ -35,6 +36,7 @@ struct SequenceScores {
   std::size_t position;                       ///< in the data set
   std::optional<OpenedPredictions> opened;    ///< nothing when no scan was wanted
   std::vector<std::vector<ScanRow>> by_rule;  ///< as many as rules, each the same scans
+  UnsureBounds unsure{};                      ///< by the first rule
   std::optional<Result> run{};                ///< that wrote the predictions, where one of ours did
   std::optional<ScoreCounts> confidences{};   ///< by the first rule, where the predictions have any
 };

@@ -13,6 +13,7 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/doctor/doctor.hpp"
 #include "datasets/formats/label_file.hpp"
+#include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/sequence/fingerprint.hpp"
 #include "datasets/sequence/stamps.hpp"
 #include "datasets/text/errors.hpp"
@@ -21,6 +22,7 @@
 #include "eval/exec/child_process.hpp"
 #include "eval/exec/exec_method.hpp"
 #include "eval/exec/pipe_messages.hpp"
+#include "eval/protocols/unsure.hpp"
 #include "eval/result/machine.hpp"
 #include "eval/result/result_scans.hpp"
 #include "eval/result/tell.hpp"
@@ -117,6 +119,8 @@ class SequenceRun {
     found_.remarks = method_->remarks();
     add_window_remark();
     if (auto doubt = sweeps_.doubt()) found_.doubts.push_back(std::move(*doubt));
+    if (std::string open = unsure_.text(rule_); !open.empty())
+      found_.doubts.push_back(std::move(open));
     timing_.wall_s = milliseconds_since(start) / 1e3;
     found_.timing = std::move(timing_);
     return std::move(found_);
@@ -216,6 +220,9 @@ class SequenceRun {
     if (!scan.truth) return;
     row.counts = score_scan(*settings_.protocol, *scan.truth, result.labels, scan.truth_points,
                             settings_.range);
+    if (is_unsure_) {
+      unsure_.add(rule_, *scan.truth, result.labels, scan.truth_points);
+    }
     row.truth_hash = hash_of_labels(*scan.truth);
   }
 
@@ -242,6 +249,9 @@ class SequenceRun {
   const Sequence& sequence_;
   const RunSettings& settings_;
   const std::optional<std::filesystem::path>& folder_;
+  const ScoreRule rule_{settings_.protocol, settings_.range};
+  const bool is_unsure_ = has_unsure_truth(sequence_.recording());
+  UnsureBounds unsure_;
   std::launch launch_;
   std::unique_ptr<Method> method_;
   SweepWatch sweeps_{sequence_};

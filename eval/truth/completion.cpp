@@ -105,4 +105,14 @@ std::vector<std::uint32_t> completed_by(std::span<const Eigen::Vector3d> positio
   return completed;
 }
 
+std::vector<double> heights_m(std::span<const Eigen::Vector3d> positions_map_m) {
+  const LowestPoints lowest(positions_map_m);
+  std::vector<double> heights;
+  for (const Eigen::Vector3d& p : positions_map_m) {
+    heights.push_back(p.allFinite() ? lowest.height_m(p)
+                                    : std::numeric_limits<double>::quiet_NaN());
+  }
+  return heights;
+}
+
 }  // namespace mosbench

@@ -14,4 +14,8 @@ namespace mosbench {
 std::vector<std::uint32_t> completed_by(std::span<const Eigen::Vector3d> positions_map_m,
                                         std::span<const std::uint32_t> part);
 
+/// Returns how far each point is above the lowest one in the 2.5 m square around it; NaN for a
+/// point that is no number.
+std::vector<double> heights_m(std::span<const Eigen::Vector3d> positions_map_m);
+
 }  // namespace mosbench

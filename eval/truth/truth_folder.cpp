@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <set>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
@@ -36,11 +35,35 @@ std::vector<const TruthTrack*> TruthFolder::contradicted() const {
   return found;
 }
 
-void TruthFolder::decide(const Decision& decision) {
-  decisions = read_decisions(path);
-  decisions.push_back(decision);
-  commit_file(decisions_file(path), format_decisions(decisions));
-  decided = last_of_each(decisions);
+void TruthFolder::decide(std::span<const Decision> more) {
+  std::vector<Decision> all = read_decisions(path);
+  std::ranges::copy(more, std::back_inserter(all));
+  std::vector<Decision> before = decisions;
+  take(std::move(all));
+  try {
+    commit_file(decisions_file(path), format_decisions(decisions));
+  } catch (...) {
+    take(std::move(before));
+    throw;
+  }
+}
+
+const TruthTrack& TruthFolder::make(const std::string& sequence, TrackEdit edit) {
+  TruthTrack next{.sequence = sequence, .number = new_number(proposed, decisions, sequence)};
+  decide(std::vector<Decision>{{next.id(), Decided::kMade, std::move(edit)}});
+  return *std::ranges::find(tracks, next.id(), &TruthTrack::id);
+}
+
+/// Changes nothing where it throws.
+void TruthFolder::take(std::vector<Decision> all) {
+  std::vector<MadeTrack> by_edits = made_by(all, proposed, decisions_file(path));
+  tracks = edited(proposed, by_edits, decisions_file(path));
+  made = std::move(by_edits);
+  decided = last_of_each(all);
+  std::erase_if(decided, [&](const auto& said) {
+    return std::ranges::find(tracks, said.first, &TruthTrack::id) == tracks.end();
+  });
+  decisions = std::move(all);
 }
 
 std::string left_text(const std::vector<TruthTrack>& undecided) {
@@ -63,9 +86,10 @@ TruthFolder open_truth(const fs::path& folder) {
   if (!is_there(file)) {
     throw DataError(folder, "has no tracks.json", "a folder that `mosbench truth propose` wrote");
   }
-  TruthFolder truth{folder, {}, {}, read_decisions(folder), {}};
+  TruthFolder truth;
+  truth.path = folder;
   TrackList list = parse_tracks(read_file(file), file);
-  truth.tracks = std::move(list.tracks);
+  truth.proposed = std::move(list.tracks);
   truth.runs = load_result_set(folder).sequences;
   std::map<std::string, std::string> fingerprints;
   for (const Result& run : truth.runs) {
@@ -74,14 +98,7 @@ TruthFolder open_truth(const fs::path& folder) {
   if (fingerprints != list.fingerprints) {
     throw DataError(file, "is of other scans than the runs beside it", "those of one propose");
   }
-  std::set<std::string> known;
-  for (const TruthTrack& track : truth.tracks) known.insert(track.id());
-  for (const Decision& decision : truth.decisions) {
-    if (known.contains(decision.track)) continue;
-    throw DataError(decisions_file(folder), "decides on \"" + decision.track + '"',
-                    "a track of tracks.json");
-  }
-  truth.decided = last_of_each(truth.decisions);
+  truth.take(read_decisions(folder));
   return truth;
 }
 

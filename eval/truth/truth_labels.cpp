@@ -3,19 +3,22 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "datasets/disk/claim.hpp"
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/label_file.hpp"
-#include "datasets/formats/point_range.hpp"
+#include "datasets/formats/label_formats.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/answer/answer_text.hpp"
-#include "eval/result/result_scans.hpp"
+#include "eval/protocols/protocol.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/truth/completion.hpp"
+#include "eval/truth/truth_scan.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -49,21 +52,19 @@ std::uint32_t id_of(Decided label) {
 }
 
 /// Returns the labels of a scan, and counts them.
-std::vector<std::uint32_t> labels_of_scan(const Frame& frame,
-                                          std::span<const std::uint32_t> objects,
-                                          const LabelsByNumber& tracks, TruthShares& shares) {
+std::vector<std::uint32_t> labels_of_scan(const TruthScan& scan, const LabelsByNumber& tracks,
+                                          TruthShares& shares) {
+  const std::vector<std::uint32_t>& objects = scan.objects;
   std::vector<std::uint32_t> labels(objects.size(), kStaticLabel);
   std::vector<std::uint32_t> part(objects.size(), 0);  // of objects that are completed, from 1
-  std::vector<Eigen::Vector3d> positions_m;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    positions_m.push_back(frame.map_from_sensor * position_of(frame.points[i]));
     if (objects[i] == 0) continue;
     const auto [label, is_by_hand] = tracks.at(objects[i]);
     labels[i] = id_of(label);
     if (label != Decided::kStatic) part[i] = 1 + labels[i];
     ++(is_by_hand ? shares.by_hand : shares.guessed);
   }
-  const std::vector<std::uint32_t> completed = completed_by(positions_m, part);
+  const std::vector<std::uint32_t> completed = completed_by(scan.positions_m, part);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     if (objects[i] == 0 && completed[i] != 0) {
       labels[i] = completed[i] - 1;
@@ -122,12 +123,10 @@ TruthShares write_sequence(const TruthFolder& truth, const Result& run,
   Claim claim(folder);
   Progress progress(run.sequence.text(), run.scans.size());
   for (std::size_t k = 0; k < run.scans.size(); ++k) {
-    const Frame frame = scans.sequence().read(k);
-    const fs::path file = object_file(run.folder(), frame.stem);
-    const auto objects = read_labels(file, frame.points.size());
-    check_objects(objects, tracks, file);
-    write_labels(claim.path() / (frame.stem + ".label"),
-                 labels_of_scan(frame, objects, tracks, shares));
+    const std::string& stem = run.scans[k].stem;
+    const TruthScan scan = read_truth_scan(scans, truth.made, k);
+    check_objects(scan.objects, tracks, object_file(run.folder(), stem));
+    write_labels(claim.path() / (stem + ".label"), labels_of_scan(scan, tracks, shares));
     progress.advance();
   }
   write_file_atomic(claim.path() / kTruthNote, note_text(truth, shares));
@@ -135,7 +134,88 @@ TruthShares write_sequence(const TruthFolder& truth, const Result& run,
   return shares;
 }
 
+fs::path corrected_file(const fs::path& folder, const std::string& stem) {
+  for (const std::string_view extension : kLabelExtensions) {
+    if (fs::path file = folder / (stem + std::string(extension)); is_there(file)) return file;
+  }
+  throw DataError(folder, "has no labels of scan " + stem, "a file of them for each scan");
+}
+
+/// Returns what somebody says of each point of a scan.
+std::vector<Decided> corrected_scan(const ResultScans& scans, std::size_t k,
+                                    const fs::path& folder) {
+  static const LabelTable classes(protocol_named("mapmos").truth);
+  const Frame frame = scans.sequence().read(k);
+  const fs::path file = corrected_file(folder, frame.stem);
+  if (tells_points(file)) check_same_points(file, frame.points, "scan " + frame.stem);
+  std::vector<Decided> said;
+  for (const std::uint32_t label : read_any_labels(file, frame.points.size())) {
+    const TruthClass is = classes[label];
+    said.push_back(is == TruthClass::kIgnored  ? Decided::kUnsure
+                   : is == TruthClass::kMoving ? Decided::kMoving
+                                               : Decided::kStatic);
+  }
+  return said;
+}
+
+/// Calls `accept` with each scan and what somebody says of its points.
+template <typename Accept>
+void for_corrected(const TruthFolder& truth, const ResultScans& scans, const fs::path& corrected,
+                   Accept&& accept) {
+  const fs::path folder = corrected / scans.result().sequence.folder() / "labels";
+  for (std::size_t k = 0; k < scans.rows().size(); ++k) {
+    accept(read_truth_scan(scans, truth.made, k), corrected_scan(scans, k, folder));
+  }
+}
+
+/// Returns the decisions that most points of a track ask for.
+std::vector<Decision> decisions_by(const TruthFolder& truth, const ResultScans& scans,
+                                   const fs::path& corrected) {
+  std::map<std::uint32_t, std::map<Decided, std::size_t>> points;
+  for_corrected(truth, scans, corrected,
+                [&](const TruthScan& scan, const std::vector<Decided>& said) {
+                  for (std::size_t i = 0; i < said.size(); ++i) ++points[scan.objects[i]][said[i]];
+                });
+  const LabelsByNumber before = labels_of_tracks(truth, scans.result().sequence.text());
+  std::vector<Decision> decisions;
+  for (const TruthTrack& track : truth.tracks) {
+    if (track.sequence != scans.result().sequence.text()) continue;
+    const Decided now = before.at(track.number).label;
+    for (const auto& [decided, count] : points[track.number]) {
+      if (2 * count > track.points && decided != now) decisions.push_back({track.id(), decided});
+    }
+  }
+  return decisions;
+}
+
 }  // namespace
+
+TruthImport import_truth(TruthFolder& truth, const std::optional<fs::path>& data,
+                         const fs::path& corrected) {
+  TruthImport imported;
+  std::vector<std::unique_ptr<ResultScans>> opened;
+  std::vector<Decision> decisions;
+  for (const Result& run : truth.runs) {
+    opened.push_back(std::make_unique<ResultScans>(run, data));
+    std::ranges::move(decisions_by(truth, *opened.back(), corrected),
+                      std::back_inserter(decisions));
+  }
+  if (!decisions.empty()) truth.decide(decisions);
+  imported.decisions = decisions.size();
+  for (const auto& scans : opened) {
+    const LabelsByNumber tracks = labels_of_tracks(truth, scans->result().sequence.text());
+    TruthShares shares;
+    for_corrected(truth, *scans, corrected,
+                  [&](const TruthScan& scan, const std::vector<Decided>& said) {
+                    const auto labels = labels_of_scan(scan, tracks, shares);
+                    for (std::size_t i = 0; i < said.size(); ++i) {
+                      if (labels[i] != id_of(said[i])) ++imported.still_differ;
+                    }
+                  });
+    imported.points += shares.points;
+  }
+  return imported;
+}
 
 std::vector<TruthShares> write_truth(const TruthFolder& truth, const std::optional<fs::path>& data,
                                      const fs::path& out) {

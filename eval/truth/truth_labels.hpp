@@ -28,4 +28,17 @@ std::vector<TruthShares> write_truth(const TruthFolder& truth,
                                      const std::optional<std::filesystem::path>& data,
                                      const std::filesystem::path& out);
 
+/// What labels that somebody corrected said.
+struct TruthImport {
+  std::size_t decisions = 0;     ///< on tracks that most of their points contradict
+  std::size_t points = 0;        ///< of all labels
+  std::size_t still_differ = 0;  ///< from what `write_truth` would write after these decisions
+};
+
+/// Decides on tracks by the labels in `corrected`/<sequence>/labels, in any format that is truth,
+/// wherever more than half of the points of a track are not as it is decided or guessed. Throws as
+/// `write_truth`, and DataError for a scan without labels, or for labels of other points.
+TruthImport import_truth(TruthFolder& truth, const std::optional<std::filesystem::path>& data,
+                         const std::filesystem::path& corrected);
+
 }  // namespace mosbench

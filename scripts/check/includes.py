@@ -57,7 +57,7 @@ MAY_INCLUDE = {
     "eval/trajectory": {"core/include", "datasets/", "eval/answer", "eval/result", "eval/statistics"},
     "eval/static_map": {"core/include", "datasets/", "eval/answer", "eval/result"},
     # Tracks that a person decides on: it reads what runs wrote, and writes labels.
-    "eval/truth": {"core/include", "datasets/", "eval/answer", "eval/predictions", "eval/result"},
+    "eval/truth": {"core/include", "datasets/", "eval/answer", "eval/protocols", "eval/predictions", "eval/result"},
     "eval/breakdown": THREADS | {"datasets/"} | NUMBERS,
     "eval/tables": {"core/include", "datasets/"} | NUMBERS,
     "eval/report": THREADS | {"datasets/", "eval/breakdown", "eval/static_map", "eval/tables", "eval/trajectory"} | NUMBERS,
@@ -85,7 +85,6 @@ EXTERNAL = {
     "xxhash.h": {"datasets", "eval", "tests"},
     "utf8.h": {"datasets"},
     "nanoflann.hpp": {"eval"},
-    "httplib.h": {"eval/truth/review_server.cpp"},
     "yaml-cpp": {"eval"},
 }
 # In these rooms only the files that print may use JSON: what computes takes and gives types.

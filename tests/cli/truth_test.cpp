@@ -1,87 +1,14 @@
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <optional>
-
-#include "datasets/disk/files.hpp"
-#include "datasets/formats/label_file.hpp"
-#include "tests/cli/program.hpp"
-#include "tests/cli/small_sequence.hpp"
-#include "tests/temp_folder.hpp"
+#include "tests/cli/truth_of_room.hpp"
 
 namespace mosbench {
 namespace {
 
 using testing::HasSubstr;
 
-class Truth : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    made_ = new TempFolder;
-    cli::write_small_sequence(*made_ / "room", kScans);
-    std::filesystem::rename(*made_ / "room/labels", *made_ / "true_labels");
-    proposed_ = new cli::Answer(cli::run(
-        {"truth", "propose", (*made_ / "room").string(), "-o", (*made_ / "truth").string()}));
-  }
-  static void TearDownTestSuite() {
-    delete proposed_;
-    delete made_;
-  }
-  void SetUp() override {
-    ASSERT_EQ(proposed_->exit_code, 0) << proposed_->err;
-    std::filesystem::copy(*made_ / "truth", folder_ / "truth",
-                          std::filesystem::copy_options::recursive);
-  }
-
-  static constexpr std::size_t kScans = 26;
-  std::string truth() const { return (folder_ / "truth").string(); }
-  std::string room() const { return (*made_ / "room").string(); }
-
-  nlohmann::json tracks() const {
-    return nlohmann::json::parse(read_file(folder_ / "truth/tracks.json")).at("tracks");
-  }
-  /// The track of the box that crosses the room.
-  std::string box() const {
-    const nlohmann::json all = tracks();
-    const auto most = std::ranges::max_element(
-        all, {}, [](const nlohmann::json& track) { return track.at("points").get<int>(); });
-    return "room/" + std::to_string(most->at("number").get<int>());
-  }
-  void decide(const std::string& track, const std::string& decided) const {
-    write_file_atomic(folder_ / "truth/decisions.json",
-                      R"({"format": 1, "decisions": [{"track": ")" + track + R"(", "decided": ")" +
-                          decided + "\"}]}");
-  }
-  cli::Answer write() const {
-    return cli::run({"truth", "write", truth(), "--out", (folder_ / "own").string()});
-  }
-  std::vector<std::uint32_t> written(std::size_t scan) const {
-    return read_labels(folder_ / "own/room/labels" / (cli::stem(scan) + ".label"),
-                       cli::kPointsPerScan);
-  }
-  /// Returns how many points of the box have this label.
-  std::size_t of_box(std::uint32_t label) const {
-    std::size_t points = 0;
-    for (std::size_t k = 0; k < kScans; ++k) {
-      const auto labels = written(k);
-      const auto truth =
-          read_labels(*made_ / "true_labels" / (cli::stem(k) + ".label"), cli::kPointsPerScan);
-      for (std::size_t i = 0; i < labels.size(); ++i) {
-        if (truth[i] == kMovingLabel && labels[i] == label) ++points;
-      }
-    }
-    return points;
-  }
-
-  static inline TempFolder* made_ = nullptr;
-  static inline cli::Answer* proposed_ = nullptr;
-  TempFolder folder_;
-};
+class Truth : public TruthOfRoom {};
 
 TEST_F(Truth, ProposesTracksAndSaysWhatIsLeft) {
   EXPECT_THAT(proposed_->out, HasSubstr("0 of them decided"));
@@ -152,6 +79,23 @@ TEST_F(Truth, IsTruthOfTheDriveForRunAndScore) {
   const cli::Answer score =
       cli::run({"score", (folder_ / "room").string(), "--predictions", (folder_ / "run").string()});
   EXPECT_THAT(score.out, HasSubstr("truth: 1 decision, 0.0 % unsure"));
+  decide(box(), "unsure");
+  ASSERT_EQ(write().exit_code, 0);
+  std::filesystem::remove_all(folder_ / "room/labels");
+  std::filesystem::rename(folder_ / "own/room/labels", folder_ / "room/labels");
+  // The run calls the box moving: that may be all wrong, or all right.
+  const std::string open = "unsure points leave 0.0 to 100.0 % IoU open, by mapmos";
+  for (const char* as : {"text", "json"}) {
+    const cli::Answer again =
+        cli::run({"score", (folder_ / "room").string(), "--predictions", (folder_ / "run").string(),
+                  "--protocol", "mapmos", "--as", as});
+    EXPECT_THAT(again.out, HasSubstr(open)) << again.err;
+  }
+  const cli::Answer rerun =
+      cli::run({"run", (folder_ / "room").string(), "--preset", "offline", "--protocol", "mapmos",
+                "--out", (folder_ / "rerun").string()});
+  EXPECT_THAT(rerun.out, HasSubstr(open)) << rerun.err;
+  EXPECT_THAT(cli::run({"rank", (folder_ / "rerun").string()}).out, HasSubstr(open));
   write_file_atomic(folder_ / "room/labels/truth.json", "{}");
   const cli::Answer broken = cli::run({"convert", (folder_ / "room").string(), "--check"});
   EXPECT_EQ(broken.exit_code, 3);
@@ -207,108 +151,51 @@ TEST_F(Truth, NamesWhatIsWrong) {
   EXPECT_EQ(cli::run({"truth", "write", truth()}).exit_code, 2);
 }
 
-/// The server of a page, until it is killed.
-class ReviewServer {
- public:
-  ReviewServer(const std::string& truth, const TempFolder& folder)
-      : child_(cli::start({"truth", "review", truth}, folder.path())) {
-    const std::string before = "open http://127.0.0.1:";
-    for (int tries = 0; tries < 600 && port_ == 0; ++tries) {
-      usleep(50'000);
-      const std::string told = read_file(folder / "stderr.txt");
-      const std::size_t at = told.find(before), token = told.find("/?token=");
-      lacks_library_ = told.find("lacks cpp-httplib") != told.npos;
-      if (lacks_library_) return;
-      if (at == told.npos || token == told.npos || told.find(' ', token) == told.npos) continue;
-      port_ = static_cast<std::uint16_t>(std::stoi(told.substr(at + before.size())));
-      token_ = told.substr(token + 8, told.find(' ', token) - token - 8);
-    }
-  }
-  ~ReviewServer() { kill_now(); }
-  void kill_now() {
-    if (child_ <= 0) return;
-    kill(child_, SIGKILL);
-    cli::wait_for(child_);
-    child_ = 0;
-  }
-  bool lacks_library() const { return lacks_library_; }
-  const std::string& token() const { return token_; }
-
-  /// Returns the answer to a request, with its head.
-  std::string ask(const std::string& method, const std::string& target) const {
-    const int connection = socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_port = htons(port_);
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    std::string answer;
-    if (connect(connection, reinterpret_cast<sockaddr*>(&address), sizeof(address)) == 0) {
-      const std::string request = method + ' ' + target +
-                                  " HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: 0\r\n"
-                                  "Connection: close\r\n\r\n";
-      send(connection, request.data(), request.size(), 0);
-      char bytes[4096];
-      for (ssize_t got = 0; (got = recv(connection, bytes, sizeof(bytes), 0)) > 0;) {
-        answer.append(bytes, static_cast<std::size_t>(got));
-      }
-    }
-    close(connection);
-    return answer;
-  }
-  std::string decide(const std::string& track, const std::string& decided) const {
-    return ask("POST", "/decide?track=" + track + "&decided=" + decided + "&token=" + token_);
-  }
-  nlohmann::json get(const std::string& target) const {
-    const std::string answer = ask("GET", target + "token=" + token_);
-    return nlohmann::json::parse(answer.substr(answer.find("\r\n\r\n") + 4));
-  }
-
- private:
-  pid_t child_;
-  std::uint16_t port_ = 0;
-  bool lacks_library_ = false;
-  std::string token_;
-};
-
-TEST_F(Truth, ReviewStoresEachDecisionAtOnce) {
-  const TempFolder streams, others;
-  std::optional<ReviewServer> server;
-  server.emplace(truth(), streams);
-  if (server->lacks_library()) GTEST_SKIP() << "this build is without cpp-httplib";
-  ASSERT_EQ(server->token().size(), 32U);
-  EXPECT_THAT(server->ask("GET", "/?token=" + server->token()), HasSubstr("<title>mosbench truth"));
-  const std::string track = box();
-  const auto film = server->get("/film?track=" + track + "&");
-  ASSERT_FALSE(film.at("frames").empty());
-  EXPECT_FALSE(film.at("frames").at(10).at("track").empty());
-  EXPECT_FALSE(film.at("frames").at(10).at("around").empty());
-  EXPECT_THAT(server->decide(track, "static"), HasSubstr(" 200 "));
-  EXPECT_THAT(server->decide(track, "moving"), HasSubstr(" 200 ")) << "of another page";
-  server->kill_now();
-  EXPECT_THAT(cli::run({"truth", "status", truth()}).out, HasSubstr("1 of them decided"));
-  EXPECT_THAT(read_file(folder_ / "truth/decisions.json"), HasSubstr("static"));
-  server.emplace(truth(), others);
-  const nlohmann::json stored = server->get("/tracks?");
-  for (const auto& told : stored.at("tracks")) {
-    if (told.at("id") != track) continue;
-    EXPECT_EQ(told.at("decided"), "moving") << "the last one wins";
-  }
-  EXPECT_THAT(server->decide(track, "taken-back"), HasSubstr("\"decided\":null"));
-  const cli::Answer second = cli::run({"truth", "review", truth()});
-  EXPECT_EQ(second.exit_code, 2) << "one server at a time";
-}
-
-TEST_F(Truth, ReviewAnswersNobodyWithoutTheToken) {
-  const TempFolder streams;
-  const ReviewServer server(truth(), streams);
-  if (server.lacks_library()) GTEST_SKIP() << "this build is without cpp-httplib";
-  for (const char* target : {"/", "/tracks", "/?token=0", "/film?track=room/1"}) {
-    EXPECT_THAT(server.ask("GET", target), HasSubstr(" 403 ")) << target;
-  }
-  EXPECT_THAT(server.ask("POST", "/decide?track=" + box() + "&decided=moving"), HasSubstr(" 403 "));
-  EXPECT_THAT(server.decide(box(), "maybe"), HasSubstr(" 400 "));
-  EXPECT_THAT(server.decide("room/99999", "moving"), HasSubstr(" 404 "));
+TEST_F(Truth, ImportsWhatAnotherProgramCorrected) {
+  ASSERT_EQ(write().exit_code, 0);
+  const std::string own = (folder_ / "own").string();
+  const auto import = [&] { return cli::run({"truth", "import", own, "-o", truth()}); };
+  const cli::Answer same = import();
+  ASSERT_EQ(same.exit_code, 0) << same.err;
+  EXPECT_THAT(same.out, HasSubstr("0 decisions by the labels in " + own + "; 0 of "));
   EXPECT_FALSE(is_there(folder_ / "truth/decisions.json"));
+  // Somebody says that the box stands, but for 7 points, and writes one scan as a table.
+  std::size_t left = 7;
+  const auto file = [&](std::size_t scan, const char* extension) {
+    return folder_ / "own/room/labels" / (cli::stem(scan) + extension);
+  };
+  for (std::size_t k = 0; k < kScans; ++k) {
+    auto labels = written(k);
+    std::string table = "label\n";
+    for (std::uint32_t& label : labels) {
+      if (label == kMovingLabel && (left == 0 || left-- == 0)) label = kStaticLabel;
+      table += std::to_string(label) + '\n';
+    }
+    if (k != 20) write_labels(file(k, ".label"), labels);
+    if (k == 20) write_file_atomic(file(k, ".csv"), table);
+  }
+  std::filesystem::remove(file(20, ".label"));
+  const cli::Answer corrected = import();
+  ASSERT_EQ(corrected.exit_code, 0) << corrected.err;
+  EXPECT_THAT(corrected.out, HasSubstr("; 7 of "));
+  EXPECT_THAT(corrected.out, HasSubstr("still differ: cut, split or paint tracks"));
+  EXPECT_THAT(read_file(folder_ / "truth/decisions.json"), HasSubstr(box()));
+  std::filesystem::rename(folder_ / "own", folder_ / "corrected");
+  ASSERT_EQ(write().exit_code, 0);
+  EXPECT_EQ(of_box(kMovingLabel), 0U);
+  std::filesystem::copy(folder_ / "corrected/room/labels/000020.csv", file(20, ".csv"));
+  std::filesystem::remove(file(20, ".label"));
+  std::string moved = "x,y,z,label\n900,0,0,9\n";
+  for (std::size_t i = 1; i < cli::kPointsPerScan; ++i) moved += "0,0,0,9\n";
+  write_file_atomic(file(20, ".csv"), moved);
+  const cli::Answer other = import();
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_THAT(other.err, HasSubstr("000020.csv: point 0 is not where it is in the scan"));
+  std::filesystem::remove(file(20, ".csv"));
+  const cli::Answer none = import();
+  EXPECT_EQ(none.exit_code, 3);
+  EXPECT_THAT(none.err, HasSubstr("has no labels of scan 000020, expected a file of them"));
+  EXPECT_EQ(cli::run({"truth", "import", own}).exit_code, 2);
 }
 
 }  // namespace

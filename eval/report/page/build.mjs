@@ -1,4 +1,4 @@
-// Bundles src/ into page.html and study.html, which the C++ build takes in. Run by scripts/build_report.sh.
+// Bundles src/ into page.html, study.html and review.html, which the C++ build takes in. Run by scripts/build_report.sh.
 import { createHash } from 'node:crypto';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { build } from 'esbuild';
@@ -24,25 +24,28 @@ const licence = (name) => {
   return `${name} ${version}\n\n${readFileSync(`${folder}node_modules/${name}/LICENSE`, 'utf8').trim()}`;
 };
 
-const style = await bundle('src/style.css');
 const template = readFileSync(`${folder}src/page.html`, 'utf8');
 
 /** The page that a script draws, with the licences of the libraries in it. */
-async function pageOf(entry, libraries) {
-  const script = await bundle(entry);
+async function pageOf(entry, libraries, { title = 'mosbench report', css = 'src/style.css', connect = '' } = {}) {
+  const [script, style] = await Promise.all([bundle(entry), bundle(css)]);
   const parts = {
     SCRIPT_HASH: hash(script),
     STYLE_HASH: hash(style),
     LICENCES: libraries.map(licence).join('\n\n\n'),
     STYLE: style,
     SCRIPT: script,
+    TITLE: title,
+    CONNECT: connect,
   };
-  return template.replace(/\b(SCRIPT_HASH|STYLE_HASH|LICENCES|STYLE|SCRIPT)\b/g, (name) => parts[name]);
+  return template.replace(/\b(SCRIPT_HASH|STYLE_HASH|LICENCES|STYLE|SCRIPT|TITLE|CONNECT)\b/g, (name) => parts[name]);
 }
 
 const pages = {
   'page.html': await pageOf('src/main.js', ['three', 'uplot']),
   'study.html': await pageOf('src/study.js', ['uplot']),
+  // Asks the server it comes from, and no other one.
+  'review.html': await pageOf('src/review.js', ['three'], { title: 'mosbench truth', css: 'src/review.css', connect: " connect-src 'self';" }),
 };
 for (const [name, page] of Object.entries(pages)) {
   if (!process.argv.includes('--check')) {

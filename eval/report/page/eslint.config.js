@@ -1,4 +1,4 @@
-const browser = ['atob', 'Blob', 'DecompressionStream', 'Response', 'URL', 'XMLSerializer', 'document', 'devicePixelRatio', 'location', 'matchMedia', 'navigator', 'performance', 'requestAnimationFrame', 'ResizeObserver', 'setInterval', 'clearInterval', 'setTimeout'];
+const browser = ['atob', 'Blob', 'DecompressionStream', 'Response', 'URL', 'XMLSerializer', 'document', 'devicePixelRatio', 'fetch', 'location', 'matchMedia', 'navigator', 'performance', 'requestAnimationFrame', 'ResizeObserver', 'setInterval', 'clearInterval', 'setTimeout'];
 const node = ['console', 'process', 'Buffer'];
 const named = (names) => Object.fromEntries(names.map((name) => [name, 'readonly']));
 
