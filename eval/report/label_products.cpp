@@ -259,11 +259,6 @@ constexpr std::array kProducts = {
 
 }  // namespace
 
-bool is_labelled_moving(PointOutcome outcome) {
-  return outcome == PointOutcome::kTruePositive || outcome == PointOutcome::kFalsePositive ||
-         outcome == PointOutcome::kIgnoredMoving;
-}
-
 ordered_json boxes_json(const ResultScans& scans, const std::vector<std::size_t>& wanted) {
   ordered_json json = ordered_json::array();
   const std::vector<std::vector<MovingBox>> boxes = boxes_of(scans, wanted);

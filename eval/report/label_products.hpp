@@ -11,9 +11,6 @@
 
 namespace mosbench {
 
-/// Whether the labels call a point of this outcome moving.
-bool is_labelled_moving(PointOutcome outcome);
-
 /// Scans before and after one that decide its boxes' numbers and speeds: a second at 10 Hz.
 inline constexpr std::size_t kScansAroundBoxes = 10;
 

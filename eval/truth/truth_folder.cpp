@@ -10,6 +10,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/result/tell.hpp"
+#include "eval/truth/sampled_iou.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -44,10 +45,9 @@ void TruthFolder::decide(const Decision& decision) {
 }
 
 std::string left_text(const std::vector<TruthTrack>& undecided) {
-  // Less than 0.05 % IoU is not worth the seconds.
-  constexpr double kWorthALook = 5e-4, kPerDecision_s = 8;
+  constexpr double kPerDecision_s = 8;
   const auto worthy = static_cast<std::size_t>(std::ranges::count_if(
-      undecided, [](const TruthTrack& track) { return track.worth >= kWorthALook; }));
+      undecided, [](const TruthTrack& track) { return track.worth >= kWorthADecision; }));
   return fmt::format("{} left, about {}", counted(worthy, "decision"),
                      duration_text(kPerDecision_s * static_cast<double>(worthy)));
 }
@@ -82,6 +82,7 @@ TruthFolder open_truth(const fs::path& folder) {
                     "a track of tracks.json");
   }
   truth.decided = last_of_each(truth.decisions);
+  sort_for_decisions(truth.tracks);
   return truth;
 }
 

@@ -14,8 +14,8 @@ namespace mosbench {
 /// The folder of `mosbench truth`: a run that kept objects, tracks.json and decisions.json.
 struct TruthFolder {
   std::filesystem::path path;
-  std::vector<Result> runs;  ///< by sequence
-  std::vector<TruthTrack> tracks;
+  std::vector<Result> runs;                ///< by sequence
+  std::vector<TruthTrack> tracks;          ///< in the order of `sort_for_decisions`
   std::vector<Decision> decisions;         ///< in order
   std::map<std::string, Decided> decided;  ///< by track
 
