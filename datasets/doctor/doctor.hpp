@@ -97,6 +97,15 @@ void examine_content(const Sequence& sequence, const LayoutContent& expected,
 /// Compares labels with what other scans see, in up to a dozen labelled scans.
 void examine_labels(const Sequence& sequence, SequenceCheckup& checkup);
 
+/// Whether a point stays where it is, by what other scans see there.
+enum class Stay : std::uint8_t { kUnseen, kStays, kLeaves };
+
+/// Returns up to a dozen scans whose labels are compared with what others see.
+std::vector<std::size_t> scans_to_look_at(const Sequence& sequence);
+/// Looks at the points of a scan from scans 5, 10 and 15 before and after.
+std::vector<Stay> stays_of(const Sequence& sequence, std::size_t scan_index,
+                           const std::vector<Point>& points);
+
 /// Returns the scans with a label other than 0, which nobody gave: data sets may have labels of key
 /// frames alone and files of zeros for the scans between. Reads the truth of all.
 std::vector<std::size_t> scans_with_labels(const Sequence& sequence);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <unordered_map>
 
 #include "datasets/doctor/doctor.hpp"
@@ -12,8 +13,10 @@ namespace mosbench {
 namespace {
 
 constexpr std::size_t kLabelledScans = 12;
-/// Scans to look from: half a second and a second away at 10 Hz.
+/// Scans to look from: half a second and a second away at 10 Hz; or 1.5 s, too, which shows more of
+/// what moves slowly or is hit by few rays.
 constexpr std::ptrdiff_t kLookFrom[] = {-10, -5, 5, 10};
+constexpr std::ptrdiff_t kLookFromMore[] = {-15, -10, -5, 5, 10, 15};
 constexpr std::size_t kStillPoints = 4000;  // per scan
 constexpr double kLeastRangeM = 1.0, kMostRangeM = 50.0;
 /// Moving points are compared with those in the same cube.
@@ -32,7 +35,8 @@ class RangeImage {
   }
 
   /// Returns whether all returns in and around the direction of a place are beyond it; nothing when
-  /// there are none, or when something hides it.
+  /// there are none, also none just below, or when something hides it. Above level ground all
+  /// returns of sparse sensors are beyond it.
   std::optional<bool> looks_through(const Eigen::Vector3d& place_m) const {
     constexpr double kBeyondM = 0.5, kBeyondShare = 0.02;
     const auto middle = cell_of(place_m);
@@ -40,14 +44,16 @@ class RangeImage {
     const double range_m = place_m.norm(), margin_m = kBeyondM + kBeyondShare * range_m;
     const std::size_t row = *middle / kColumns, column = *middle % kColumns;
     if (nearest_m_[*middle] < range_m - margin_m) return std::nullopt;
-    for (std::size_t r = std::max<std::size_t>(row, 1) - 1; r <= std::min(row + 1, kRows - 1);
-         ++r) {
+    const std::size_t below = std::max<std::size_t>(row, 1) - 1;
+    bool is_seen_below = false;
+    for (std::size_t r = below; r <= std::min(row + 1, kRows - 1); ++r) {
       for (const std::size_t c : {column + kColumns - 1, column, column + 1}) {
         const float nearest_m = nearest_m_[r * kColumns + c % kColumns];
         if (nearest_m < range_m + margin_m) return false;
+        is_seen_below = is_seen_below || (r == below && nearest_m < kNothingM);
       }
     }
-    return true;
+    return is_seen_below ? std::optional(true) : std::nullopt;
   }
 
  private:
@@ -66,6 +72,32 @@ class RangeImage {
 
   std::vector<float> nearest_m_;
 };
+
+/// Another scan, and where it is.
+using Look = std::pair<RangeImage, Pose>;
+
+std::vector<Look> looks_from(const Sequence& sequence, const std::vector<Pose>& poses,
+                             std::size_t scan_index, std::span<const std::ptrdiff_t> apart) {
+  std::vector<Look> looks;
+  for (const std::ptrdiff_t scans : apart) {
+    const std::ptrdiff_t other = static_cast<std::ptrdiff_t>(scan_index) + scans;
+    if (other < 0 || other >= static_cast<std::ptrdiff_t>(sequence.size())) continue;
+    const auto index = static_cast<std::size_t>(other);
+    looks.emplace_back(RangeImage(sequence.read(index).points),
+                       relative(poses, {index, scan_index}));
+  }
+  return looks;
+}
+
+Stay stay_of(const Eigen::Vector3d& point_m, const std::vector<Look>& looks) {
+  Stay stay = Stay::kUnseen;
+  if (!(point_m.norm() < kMostRangeM)) return stay;
+  for (const auto& [image, other_from_this] : looks) {
+    const auto through = image.looks_through(other_from_this * point_m);
+    if (through) stay = std::max(stay, *through ? Stay::kLeaves : Stay::kStays);
+  }
+  return stay;
+}
 
 class LabelExamination {
  public:
@@ -111,25 +143,11 @@ class LabelExamination {
   void look_from_others(std::size_t scan_index, const std::vector<Point>& points,
                         const std::vector<std::size_t>& moving,
                         const std::vector<std::size_t>& still) {
-    std::vector<std::pair<RangeImage, Pose>> others;
-    for (const std::ptrdiff_t apart : kLookFrom) {
-      const std::ptrdiff_t other = static_cast<std::ptrdiff_t>(scan_index) + apart;
-      if (other < 0 || other >= static_cast<std::ptrdiff_t>(sequence_.size())) continue;
-      const auto index = static_cast<std::size_t>(other);
-      others.emplace_back(RangeImage(sequence_.read(index).points),
-                          relative(poses_, {index, scan_index}));
-    }
+    const std::vector<Look> looks = looks_from(sequence_, poses_, scan_index, kLookFrom);
     const auto count = [&](std::size_t i, std::size_t& seen, std::size_t& left) {
-      const Eigen::Vector3d point_m = position_of(points[i]);
-      if (!(point_m.norm() < kMostRangeM)) return;
-      bool is_seen = false, is_left = false;
-      for (const auto& [image, other_from_this] : others) {
-        const auto through = image.looks_through(other_from_this * point_m);
-        is_seen = is_seen || through.has_value();
-        is_left = is_left || through.value_or(false);
-      }
-      seen += is_seen ? 1 : 0;
-      left += is_left ? 1 : 0;
+      const Stay stay = stay_of(position_of(points[i]), looks);
+      seen += stay == Stay::kUnseen ? 0 : 1;
+      left += stay == Stay::kLeaves ? 1 : 0;
     };
     for (const std::size_t i : moving) count(i, moving_seen_, moving_left_);
     const std::size_t step = std::max<std::size_t>(1, still.size() / kStillPoints);
@@ -182,6 +200,28 @@ std::vector<std::size_t> scans_with_labels(const Sequence& sequence) {
                                [](std::uint32_t label) { return (label & 0xFFFFU) == 0; });
   });
   return labelled;
+}
+
+std::vector<std::size_t> scans_to_look_at(const Sequence& sequence) {
+  std::vector<std::size_t> scans;  // from the middles of as many parts, with others on both sides
+  for (std::size_t i = 0; i < kLabelledScans; ++i) {
+    const std::size_t scan = (2 * i + 1) * sequence.size() / (2 * kLabelledScans);
+    if (scan < sequence.size() && (scans.empty() || scans.back() < scan)) scans.push_back(scan);
+  }
+  return scans;
+}
+
+std::vector<Stay> stays_of(const Sequence& sequence, std::size_t scan_index,
+                           const std::vector<Point>& points) {
+  const std::vector<Look> looks =
+      looks_from(sequence, poses_of(sequence), scan_index, kLookFromMore);
+  std::vector<Stay> stays;
+  stays.reserve(points.size());
+  for (const Point& point : points) {
+    const bool is_near = !(range_m(point) > kLeastRangeM);
+    stays.push_back(is_near ? Stay::kUnseen : stay_of(position_of(point), looks));
+  }
+  return stays;
 }
 
 void examine_labels(const Sequence& sequence, SequenceCheckup& checkup) {

@@ -5,12 +5,14 @@
 #include <optional>
 #include <utility>
 
+#include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/cli/commands.hpp"
 #include "eval/cli/flags.hpp"
 #include "eval/cli/run_kinds.hpp"
 #include "eval/result/output.hpp"
 #include "eval/result/tell.hpp"
+#include "eval/tables/order_without_truth.hpp"
 #include "eval/tables/table_print.hpp"
 
 namespace mosbench {
@@ -19,7 +21,7 @@ namespace {
 struct RankFlags {
   std::vector<std::string> runs;
   std::string order = "iou";
-  bool allow_stale = false;
+  bool allow_stale = false, no_truth = false;
   JobFlags job;
 };
 
@@ -46,6 +48,7 @@ void keep_comparable_cells(std::vector<ResultSet>& runs) {
 Answer rank(RankFlags options, const CLI::App& command) {
   check_answer_file(command, options.job.output);
   if (options.runs.size() == 1 && is_job(options.runs.front())) {
+    if (options.no_truth) throw UsageError("--no-truth: is nothing for a job, expected runs");
     options.job.file = options.runs.front();
     return rank_job(options.job);
   }
@@ -55,6 +58,11 @@ Answer rank(RankFlags options, const CLI::App& command) {
   }
   refuse_stale(runs, options.allow_stale);
   keep_comparable_cells(runs);
+  if (options.no_truth) {
+    Answer answer = order_without_truth(runs);
+    answer.file = options.job.output;
+    return answer;
+  }
   Leaderboard board =
       leaderboard_of(runs, options.order == "given" ? RowOrder::kGiven : RowOrder::kIou);
   add_folders_of_twins(board);
@@ -73,6 +81,8 @@ CommandRun add_rank(CLI::App& command) {
   add(command, "--order", options->order, "Best IoU first, or as RUNS are given")
       ->check(CLI::IsMember({"iou", "given"}))
       ->capture_default_str();
+  command.add_flag("--no-truth", options->no_truth,
+                   "Order by what later scans show, not by truth: an order, not a score");
   add_stale_flag(command, options->allow_stale);
   add(command, "--out DIR", options->job.out,
       "Folder of the results of JOB.yaml (default: results/runs/<its name>)");

@@ -16,6 +16,7 @@
 #include "eval/result/result.hpp"
 #include "eval/result/tell.hpp"
 #include "eval/truth/review.hpp"
+#include "eval/truth/track_counts.hpp"
 #include "eval/truth/truth_labels.hpp"
 
 namespace mosbench {
@@ -23,14 +24,35 @@ namespace {
 
 struct TruthFlags : JobWords {
   std::string action;
+  std::vector<std::string> results;
   std::optional<std::filesystem::path> out, data;
   unsigned threads = hardware_threads();
 };
 
 constexpr std::size_t kMostRows = 20;
 
+/// What labels are worth, by the tracks that are decided.
+Sheet estimates(const TruthFolder& truth, const std::vector<std::string>& results,
+                const std::optional<std::filesystem::path>& data) {
+  Sheet sheet{.title = "IoU if every track were decided, estimated",
+              .columns = {{"labels", Unit::kText}, {"IoU", Unit::kPercent, 1}}};
+  const auto add = [&](const std::string& labels, const TrackCounts& counts) {
+    const auto iou = sampled_iou(truth.tracks, truth.decided, counts);
+    if (iou) sheet.rows.push_back({labels, *iou});
+  };
+  add("as written now", counts_of_written(truth));
+  for (const std::string& path : results) {
+    for (const ResultSet& run : load_runs_of_folders(path)) {
+      add(method_words(run.front()), counts_of_result(truth, run, data));
+    }
+  }
+  sheet.notes = {
+      "right only if tracks are decided in this order: half of them are drawn at random"};
+  return sheet;
+}
+
 /// The tracks that are to be decided next, and how many.
-Answer status_answer(const std::filesystem::path& folder) {
+Answer status_answer(const std::filesystem::path& folder, const TruthFlags& flags = {}) {
   const TruthFolder truth = open_truth(folder);
   const std::vector<TruthTrack> left = truth.undecided();
   std::size_t scans = 0;
@@ -52,8 +74,8 @@ Answer status_answer(const std::filesystem::path& folder) {
                           track.worth});
   }
   if (left.size() > kMostRows) {
-    sheet.notes.push_back(fmt::format("{} of {} undecided tracks are shown, the most worthy first",
-                                      kMostRows, left.size()));
+    sheet.notes.push_back(fmt::format(
+        "{} of {} undecided tracks are shown, in the order of decisions", kMostRows, left.size()));
   }
   for (const TruthTrack* track : truth.contradicted()) {
     sheet.notes.push_back(
@@ -61,7 +83,9 @@ Answer status_answer(const std::filesystem::path& folder) {
                     track->id(), track->moves ? "static" : "moving", 100 * (1 - track->doubt),
                     track->moves ? "moving" : "static"));
   }
-  return {.standing = standing_of(ResultSet{folder, truth.runs}), .sheets = {sheet}};
+  Answer answer{.standing = standing_of(ResultSet{folder, truth.runs}), .sheets = {sheet}};
+  if (!truth.decided.empty()) answer.sheets.push_back(estimates(truth, flags.results, flags.data));
+  return answer;
 }
 
 /// Throws UsageError where the tracks that decisions are about would be found anew.
@@ -133,6 +157,9 @@ Answer import_answer(const TruthFlags& flags) {
 }
 
 Answer truth_answer(const TruthFlags& flags, const CLI::App& command) {
+  if (!flags.results.empty() && flags.action != "status") {
+    throw UsageError("RESULTS: are nothing for truth " + flags.action + ", expected them left out");
+  }
   if (flags.action == "propose") return propose(flags);
   constexpr std::array kOfTruth = {"--data", "--as", "--json"};
   const std::string given = given_words(command, [&](const CLI::Option& option) {
@@ -147,7 +174,7 @@ Answer truth_answer(const TruthFlags& flags, const CLI::App& command) {
   }
   if (flags.action == "write") return write_answer(flags);
   if (flags.action == "import") return import_answer(flags);
-  if (flags.action == "status") return status_answer(flags.input);
+  if (flags.action == "status") return status_answer(flags.input, flags);
   serve_review(flags.input, flags.data, [](const std::string& address) {
     tell(fmt::format("open {} in a browser; Ctrl-C ends, decisions are stored at once", address));
   });
@@ -164,10 +191,12 @@ CommandRun add_truth(CLI::App& command) {
       ->required()
       ->check(CLI::IsMember({"propose", "review", "status", "write", "import"}));
   add_dataset_flags(command, *flags, "DRIVE");
+  add(command, "RESULTS PATH", flags->results,
+      "Of status: results of methods on the same scans, to estimate their IoU");
   add(command, "-o,--out DIR", flags->out,
       "Folder to write: of propose and import TRUTH, of write <sequence>/labels");
   add(command, "--data DIR", flags->data,
-      "Of review, write and import: folder of the drive, where it was moved");
+      "Of review, status, write and import: folder of the drive, where it was moved");
   add_odometry_flag(command, flags->odometry, "Find the poses by it instead of reading them");
   add_threads_flag(command, flags->threads);
   return [flags, &command] { return truth_answer(*flags, command); };

@@ -97,6 +97,11 @@ void judge_points(const Protocol& protocol, std::span<const std::uint32_t> truth
 
 }  // namespace
 
+bool is_labelled_moving(PointOutcome outcome) {
+  return outcome == PointOutcome::kTruePositive || outcome == PointOutcome::kFalsePositive ||
+         outcome == PointOutcome::kIgnoredMoving;
+}
+
 Confusion& Confusion::operator+=(const Confusion& other) {
   tp += other.tp;
   fp += other.fp;

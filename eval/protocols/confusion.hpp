@@ -37,6 +37,9 @@ enum class PointOutcome : std::uint8_t {
   kIgnoredMoving   ///< not counted; predicted moving
 };
 
+/// Whether the labels call a point of this outcome moving.
+bool is_labelled_moving(PointOutcome outcome);
+
 /// Points per PointOutcome.
 using OutcomeCounts = std::array<std::uint64_t, 6>;
 

@@ -52,11 +52,6 @@ void format_points(const StaticMap& map, const ByteSink& sink) {
 
 }  // namespace
 
-bool is_labelled_moving(PointOutcome outcome) {
-  return outcome == PointOutcome::kTruePositive || outcome == PointOutcome::kFalsePositive ||
-         outcome == PointOutcome::kIgnoredMoving;
-}
-
 StaticMap::StaticMap(const StaticMapConfig& config, fs::path spill_folder)
     : config_(config), spill_folder_(std::move(spill_folder)) {}
 

@@ -15,9 +15,6 @@
 
 namespace mosbench {
 
-/// Whether the labels call a point of this outcome moving.
-bool is_labelled_moving(PointOutcome outcome);
-
 /// The first static point that was seen in a voxel.
 struct MapPoint {
   Eigen::Vector3d position_map_m;

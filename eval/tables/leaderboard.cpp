@@ -89,7 +89,7 @@ bool lacks_truth(const Result& sequence) { return counted_scans(sequence).empty(
 void check_has_truth(const ResultSet& run) {
   const auto unscored = std::ranges::find_if(run.sequences, lacks_truth);
   if (unscored == run.sequences.end()) return;
-  throw DataError(unscored->file, "has no scan with truth", "a run that was scored");
+  throw DataError(unscored->file, "has no scan with truth", "a run that was scored, or --no-truth");
 }
 
 /// Methods are ranked with the poses that they were run with.

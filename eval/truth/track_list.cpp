@@ -8,6 +8,7 @@
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/label_file.hpp"
+#include "datasets/sequence/fingerprint.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/json_text.hpp"
 #include "eval/answer/answer_text.hpp"
@@ -52,6 +53,12 @@ double share_in(const ordered_json& json, const char* name) {
   const double share = json.at(name).get<double>();
   if (!(share >= 0 && share <= 1)) throw std::invalid_argument(name);
   return share;
+}
+
+/// Returns a number of 0 to 1, never 0.
+double chance_of(const std::string& text) {
+  const auto number = std::stoul(hash_of_text(text).substr(0, 12), nullptr, 16);
+  return (static_cast<double>(number) + 1) / static_cast<double>(1ULL << 48);
 }
 
 TruthTrack track_from(const ordered_json& json) {
@@ -107,8 +114,10 @@ TrackList parse_tracks(std::string_view text, const std::filesystem::path& file)
       list.fingerprints[sequence] = fingerprint.get<std::string>();
     }
     for (const ordered_json& member : json.at("tracks")) {
-      const TruthTrack& track = list.tracks.emplace_back(track_from(member));
-      if (!list.fingerprints.contains(track.sequence)) throw std::invalid_argument("sequence");
+      TruthTrack& track = list.tracks.emplace_back(track_from(member));
+      const auto of = list.fingerprints.find(track.sequence);
+      if (of == list.fingerprints.end()) throw std::invalid_argument("sequence");
+      track.chance = chance_of(of->second + track.id());
       if (!ids.insert(track.id()).second) throw std::invalid_argument("tracks");
     }
   } catch (const ordered_json::exception& error) {

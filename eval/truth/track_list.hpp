@@ -12,6 +12,9 @@
 
 namespace mosbench {
 
+/// Less IoU is not worth the seconds of a decision.
+inline constexpr double kWorthADecision = 5e-4;
+
 /// An object over time, about which a person decides whether it moves.
 struct TruthTrack {
   std::string sequence;
@@ -22,6 +25,7 @@ struct TruthTrack {
   bool moves = false;  ///< the program's guess
   double doubt = 0;    ///< share of the looks at it that speak against the guess
   double worth = 0;    ///< IoU that a decision is expected to win: lost points times doubt squared
+  double chance = 1;   ///< of 0 to 1, drawn at random; the scans and the id fix it
 
   /// "08/12".
   std::string id() const { return sequence + '/' + std::to_string(number); }

@@ -9,6 +9,7 @@
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
 #include "eval/result/tell.hpp"
+#include "eval/truth/sampled_iou.hpp"
 
 namespace mosbench {
 namespace fs = std::filesystem;
@@ -58,6 +59,7 @@ const TruthTrack& TruthFolder::make(const std::string& sequence, TrackEdit edit)
 void TruthFolder::take(std::vector<Decision> all) {
   std::vector<MadeTrack> by_edits = made_by(all, proposed, decisions_file(path));
   tracks = edited(proposed, by_edits, decisions_file(path));
+  sort_for_decisions(tracks);
   made = std::move(by_edits);
   decided = last_of_each(all);
   std::erase_if(decided, [&](const auto& said) {
@@ -67,10 +69,9 @@ void TruthFolder::take(std::vector<Decision> all) {
 }
 
 std::string left_text(const std::vector<TruthTrack>& undecided) {
-  // Less than 0.05 % IoU is not worth the seconds.
-  constexpr double kWorthALook = 5e-4, kPerDecision_s = 8;
+  constexpr double kPerDecision_s = 8;
   const auto worthy = static_cast<std::size_t>(std::ranges::count_if(
-      undecided, [](const TruthTrack& track) { return track.worth >= kWorthALook; }));
+      undecided, [](const TruthTrack& track) { return track.worth >= kWorthADecision; }));
   return fmt::format("{} left, about {}", counted(worthy, "decision"),
                      duration_text(kPerDecision_s * static_cast<double>(worthy)));
 }

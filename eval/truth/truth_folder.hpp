@@ -20,7 +20,7 @@ struct TruthFolder {
   std::vector<TruthTrack> proposed;        ///< of tracks.json
   std::vector<Decision> decisions;         ///< in order
   std::vector<MadeTrack> made;             ///< by edits that hold
-  std::vector<TruthTrack> tracks;          ///< proposed and made, those that have points
+  std::vector<TruthTrack> tracks;          ///< proposed and made that have points, as `sort_for_decisions` orders
   std::map<std::string, Decided> decided;  ///< by track
 
   std::vector<TruthTrack> undecided() const;

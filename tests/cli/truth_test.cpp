@@ -50,6 +50,53 @@ TEST_F(Truth, HeedsDecisionsAndSaysWhereLabelsComeFrom) {
   EXPECT_EQ(note.at("decided").at(0).at("decided"), "unsure");
 }
 
+TEST_F(Truth, EstimatesTheIouOfLabelsFromDecisions) {
+  const std::string run = (folder_ / "run").string();
+  ASSERT_EQ(cli::run({"run", room(), "--method", "hmm-mos-plus", "--out", run}).exit_code, 0);
+  const auto status = [&] { return cli::run({"truth", "status", truth(), run}); };
+  EXPECT_THAT(status().out, testing::Not(HasSubstr("estimated"))) << "nothing is decided";
+  nlohmann::json decisions = nlohmann::json::array();
+  for (const nlohmann::json& track : tracks()) {
+    const std::string id = "room/" + std::to_string(track.at("number").get<int>());
+    decisions.push_back({{"track", id}, {"decided", id == box() ? "moving" : "static"}});
+  }
+  write_file_atomic(folder_ / "truth/decisions.json",
+                    nlohmann::json{{"format", 1}, {"decisions", decisions}}.dump());
+  EXPECT_THAT(status().out, HasSubstr("IoU if every track were decided, estimated"));
+  const nlohmann::json answer =
+      nlohmann::json::parse(cli::run({"truth", "status", truth(), run, "--json"}).out);
+  const nlohmann::json rows = answer.at("sheets").at(1).at("rows");
+  ASSERT_EQ(rows.size(), 2U);
+  EXPECT_EQ(rows[0].at("labels"), "as written now");
+  EXPECT_EQ(rows[0].at("iou").at("value"), 1);
+
+  // With every track decided it is what `score` says against the labels that are written.
+  ASSERT_EQ(write().exit_code, 0);
+  cli::write_small_sequence(folder_ / "room", kScans);
+  std::filesystem::remove_all(folder_ / "room/labels");
+  std::filesystem::copy(folder_ / "own/room/labels", folder_ / "room/labels");
+  const cli::Answer score = cli::run({"score", (folder_ / "room").string(), "--predictions", run,
+                                      "--protocol", "mapmos", "--json"});
+  ASSERT_EQ(score.exit_code, 0) << score.err;
+  const nlohmann::json scored =
+      nlohmann::json::parse(score.out).at("sequences").at(0).at("summary").at("iou");
+  EXPECT_NEAR(rows[1].at("iou").at("value"), scored.get<double>(), 1e-12);
+  EXPECT_EQ(rows[1].at("iou").at("low"), rows[1].at("iou").at("high"));
+}
+
+TEST_F(Truth, EstimatesNothingOfOtherResults) {
+  decide(box(), "moving");
+  cli::write_small_sequence(folder_ / "room", 12);
+  const std::string run = (folder_ / "run").string();
+  ASSERT_EQ(cli::run({"run", (folder_ / "room").string(), "--out", run}).exit_code, 0);
+  const cli::Answer other = cli::run({"truth", "status", truth(), run});
+  EXPECT_EQ(other.exit_code, 3);
+  EXPECT_THAT(other.err, HasSubstr("is of 12 scans, expected the 26 of "));
+  const cli::Answer review = cli::run({"truth", "write", truth(), run});
+  EXPECT_EQ(review.exit_code, 2);
+  EXPECT_THAT(review.err, HasSubstr("RESULTS: are nothing for truth write"));
+}
+
 TEST_F(Truth, TellsDecisionsAgainstTheLooks) {
   auto list = nlohmann::ordered_json::parse(read_file(folder_ / "truth/tracks.json"));
   const std::string track = box();

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -131,6 +133,62 @@ TEST(TruthOfKeyFrames, IsMissingWhereAllScansAreZeros) {
   SequenceCheckup checkup;
   EXPECT_THAT(said_of_ids(Zeros(), checkup),
               testing::Contains("all labels of all scans are 0; expected labelled points"));
+}
+
+/// A wall 10 m away, seen from `lowest_deg` on, and in one scan a pole 5 m in front of the sensor.
+class PoleBeforeWall : public Sequence {
+ public:
+  static constexpr std::size_t kScans = 40, kPoleScan = 20;
+  explicit PoleBeforeWall(int lowest_deg) : lowest_deg_(lowest_deg) {
+    for (std::size_t k = 0; k < kScans; ++k) {
+      ScanEntry& entry = mutable_recording().scans.emplace_back();
+      entry.stem = std::to_string(k);
+    }
+  }
+  using Sequence::read;
+  void read(std::size_t scan_index, Frame& frame) const override {
+    describe(scan_index, frame);
+    for (int up_deg = lowest_deg_; up_deg <= 10; ++up_deg) {
+      for (int around = -40; around <= 40; ++around) {
+        const double a = 0.5 * around * kRad, e = (up_deg + 0.5) * kRad;
+        const bool is_pole = scan_index == kPoleScan && around >= -1 && around <= 1;
+        const double x = is_pole ? 5 : 10;
+        frame.points.push_back({static_cast<float>(x), static_cast<float>(x * std::tan(a)),
+                                static_cast<float>(x / std::cos(a) * std::tan(e)), 0});
+      }
+    }
+  }
+  std::vector<std::uint32_t> read_truth(std::size_t) const override { return {}; }
+
+ private:
+  static constexpr double kRad = 3.14159265358979 / 180;
+  int lowest_deg_;
+};
+
+/// How many points of the scan with the pole are what, those of the pole apart.
+std::map<std::pair<bool, Stay>, std::size_t> counted_stays(const Sequence& sequence) {
+  const Frame frame = sequence.read(PoleBeforeWall::kPoleScan);
+  const std::vector<Stay> stays = stays_of(sequence, PoleBeforeWall::kPoleScan, frame.points);
+  std::map<std::pair<bool, Stay>, std::size_t> counts;
+  for (std::size_t i = 0; i < stays.size(); ++i) {
+    ++counts[{frame.points[i].x < 9, stays[i]}];
+  }
+  return counts;
+}
+
+TEST(PointsThatOtherScansLookAt, LeaveOnlyWhereReturnsJustBelowAreBeyondToo) {
+  auto whole = counted_stays(PoleBeforeWall(-10));
+  const std::size_t pole_points = 3 * 21;
+  EXPECT_EQ((whole[{true, Stay::kLeaves}]), pole_points - 3) << "but for the lowest row";
+  EXPECT_EQ((whole[{true, Stay::kUnseen}]), 3U);
+  EXPECT_EQ((whole[{false, Stay::kLeaves}]), 0U);
+  EXPECT_GT((whole[{false, Stay::kStays}]), 1000U);
+}
+
+TEST(PointsThatOtherScansLookAt, AreOfScansWithOthersOnBothSides) {
+  EXPECT_THAT(scans_to_look_at(QuietSequence(120, {})),
+              ElementsAre(5U, 15U, 25U, 35U, 45U, 55U, 65U, 75U, 85U, 95U, 105U, 115U));
+  EXPECT_THAT(scans_to_look_at(QuietSequence(2, {})), ElementsAre(0U, 1U));
 }
 
 }  // namespace
