@@ -55,7 +55,8 @@ def settings(listed):
         "### Presets of odometry", table(["preset", "odometry", "settings"], [
             [one["name"], one["odometry"], values(one["settings"])] for one in odometry["presets"]]),
         "## Presets", table(["preset", "data set", "method", "protocol", "settings", "from"], [
-            [one["name"], one["dataset"], one["method"], one["protocol"], values(one["settings"]), one["source"]] for one in listed["presets"]]),
+            [one["name"], one["dataset"], one["method"], one["protocol"], values(one["settings"]), one["source"]]
+            for one in listed["presets"]]),
         "## Disturbances", table(["kind", "unit", "no change", "from", "to", "what", "source"], [
             [one["name"], one["unit"], one["none"], one["lowest"], one["highest"], one["definition"], one["source"]]
             for one in listed["perturbations"]])])

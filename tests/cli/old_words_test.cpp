@@ -193,7 +193,7 @@ std::vector<std::vector<std::string>> lines_of_page(const std::string& page) {
   return lines;
 }
 
-/// History tells what was measured then; the reference repeats the help, whose text is looked at here.
+/// History tells what was measured then; the reference repeats the help, which is looked at here.
 TEST_F(OldWords, AreOnNoPage) {
   const std::filesystem::path source = MOSBENCH_SOURCE_DIR;
   std::vector<std::filesystem::path> pages = {source / "README.md", source / "CONTRIBUTING.md"};
