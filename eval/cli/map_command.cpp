@@ -36,10 +36,11 @@ void check_files(const std::vector<std::string>& files) {
   constexpr std::array<std::string_view, 4> kEndings = {".pcd", ".ply", ".pgm", ".yaml"};
   for (const fs::path file : files) {
     if (std::ranges::find(kEndings, file.extension().string()) == kEndings.end()) {
-      throw UsageError(fmt::format(
-          "-o {}: is no map by its name, expected .pcd or .ply for points, .pgm or .yaml for a floor "
-          "plan",
-          file.string()));
+      throw UsageError(
+          fmt::format("-o {}: is no map by its name, expected .pcd or .ply for points, .pgm or "
+                      ".yaml for a floor "
+                      "plan",
+                      file.string()));
     }
     check_output(file);
   }
@@ -64,7 +65,9 @@ RangeGate judged_range(const Result& result) {
           settings.number(common_settings::kMaxRange_m, -1.0)};
 }
 
-bool is_plan(const fs::path& file) { return file.extension() == ".pgm" || file.extension() == ".yaml"; }
+bool is_plan(const fs::path& file) {
+  return file.extension() == ".pgm" || file.extension() == ".yaml";
+}
 
 void write_map(const StaticMap& map, const fs::path& file) {
   if (file.has_parent_path()) fs::create_directories(file.parent_path());
@@ -91,15 +94,15 @@ Sheet map_sheet(const StaticMap& map, const SequenceOutcome& run) {
                           {"moving removed", Unit::kPercent, 2}}};
   const auto [points, moving] = moving_points(run.result);
   const MapCounts truth = map.voxels_with_truth();
-  sheet.rows = {{run.result.sequence.text(), std::uint64_t{run.result.scans.size()}, points,
-                 moving, map.size(), or_missing(truth.static_accuracy()),
+  sheet.rows = {{run.result.sequence.text(), std::uint64_t{run.result.scans.size()}, points, moving,
+                 map.size(), or_missing(truth.static_accuracy()),
                  or_missing(truth.dynamic_accuracy())}};
-  sheet.notes = {fmt::format("a point per {:g} m, of what is {} from the sensor", map.config().voxel_m,
-                             gate_text(map.config().range))};
+  sheet.notes = {fmt::format("a point per {:g} m, of what is {} from the sensor",
+                             map.config().voxel_m, gate_text(map.config().range))};
   if (truth.static_points + truth.dynamic_points > 0) {
-    sheet.notes.push_back(fmt::format(
-        "by the truth, {} of {} voxels that moving points alone hit are left as ghosts",
-        truth.dynamic_points - truth.removed_dynamic, truth.dynamic_points));
+    sheet.notes.push_back(
+        fmt::format("by the truth, {} of {} voxels that moving points alone hit are left as ghosts",
+                    truth.dynamic_points - truth.removed_dynamic, truth.dynamic_points));
   }
   for (const std::string& remark : run.result.remarks) sheet.notes.push_back(remark);
   return sheet;
@@ -161,8 +164,7 @@ CommandRun add_map(CLI::App& command) {
       "Of the floor plan: heights above the ground of what is in the way, m")
       ->capture_default_str();
   add(command, "--out DIR", flags->place.out, "Folder of the labels (default: as of run)");
-  command.add_flag("--overwrite", flags->place.overwrite,
-                   "Run again and replace what is in --out");
+  command.add_flag("--overwrite", flags->place.overwrite, "Run again and replace what is in --out");
   add_odometry_flag(command, flags->odometry, "Find the poses by it instead of reading them");
   return [flags] { return map_answer(*flags); };
 }

@@ -33,7 +33,8 @@ class Ground {
   explicit Ground(const StaticMap& map) {
     map.for_each([&](const MapPoint& point) {
       const Eigen::Vector3d& at_m = point.position_map_m;
-      heights_m_[floor_cell_of(at_m.x(), at_m.y(), kSquare_m)].push_back(static_cast<float>(at_m.z()));
+      heights_m_[floor_cell_of(at_m.x(), at_m.y(), kSquare_m)].push_back(
+          static_cast<float>(at_m.z()));
     });
     for (auto& [square, heights_m] : heights_m_) heights_m = {lowest_m(heights_m)};
   }
@@ -68,7 +69,8 @@ class Ground {
   std::map<FloorCell, std::vector<float>> heights_m_;
 };
 
-/// Returns how high the sensor is above the ground around it, in a scan that is turned like the map.
+/// Returns how high the sensor is above the ground around it, in a scan that is turned like the
+/// map.
 double height_of_sensor_m(const std::vector<Eigen::Vector3d>& rays_m) {
   constexpr double kAround_m = 15.0, kShareBelowGround = 0.02;
   std::vector<double> depths_m;
@@ -94,14 +96,14 @@ double free_until_m(const Eigen::Vector3d& ray_m, double sensor_m, const HeightR
 void FreeCells::add(std::int64_t x, std::int64_t y) {
   const auto in = [](std::int64_t i) { return ((i % kSide) + kSide) % kSide; };
   squares_[{(x - in(x)) / kSide, (y - in(y)) / kSide}].set(
-      static_cast<std::size_t>(in(x) * kSide + in(y)));
+      static_cast<std::size_t>(in(x)*kSide + in(y)));
 }
 
 bool FreeCells::has(std::int64_t x, std::int64_t y) const {
   const auto in = [](std::int64_t i) { return ((i % kSide) + kSide) % kSide; };
   const auto square = squares_.find({(x - in(x)) / kSide, (y - in(y)) / kSide});
   return square != squares_.end() &&
-         square->second.test(static_cast<std::size_t>(in(x) * kSide + in(y)));
+         square->second.test(static_cast<std::size_t>(in(x)*kSide + in(y)));
 }
 
 void FreeCells::add(const JudgedScan& scan, const RangeGate& range) {
@@ -125,7 +127,7 @@ void FreeCells::add(const JudgedScan& scan, const RangeGate& range) {
     const double towards_rad = (static_cast<double>(i) + 0.5) * width_rad;
     for (double at_m = 0.0; at_m + cell_m_ <= free_m[i]; at_m += 0.7 * cell_m_) {
       const auto [x, y] = floor_cell_of(from_m.x() + at_m * std::cos(towards_rad),
-                                  from_m.y() + at_m * std::sin(towards_rad), cell_m_);
+                                        from_m.y() + at_m * std::sin(towards_rad), cell_m_);
       add(x, y);
     }
   }
@@ -148,8 +150,9 @@ FloorPlan floor_plan(const StaticMap& map, const FreeCells& free, const HeightRa
   if (west > east) throw DataError(image, "would be empty", "a map with points");
   const std::int64_t width = east - west + 1, height = north - south + 1;
   if (width > kMostCells / height) {
-    throw DataError(image, fmt::format("would have {} x {} cells", width, height),
-                    fmt::format("at most {} cells: a larger --voxel, or fewer --scans", kMostCells));
+    throw DataError(
+        image, fmt::format("would have {} x {} cells", width, height),
+        fmt::format("at most {} cells: a larger --voxel, or fewer --scans", kMostCells));
   }
   FloorPlan plan;
   plan.pgm = fmt::format("P5\n{} {}\n255\n", width, height);

@@ -97,7 +97,8 @@ StaticMap::Tile& StaticMap::tile_at(const Place& place) {
 void StaticMap::spill_far_from(const Eigen::Vector3d& sensor_m) {
   std::vector<std::pair<double, Place>> tiles;
   for (const auto& [place, tile] : tiles_) {
-    const Eigen::Vector3d middle_voxels(static_cast<double>(place[0]), static_cast<double>(place[1]),
+    const Eigen::Vector3d middle_voxels(static_cast<double>(place[0]),
+                                        static_cast<double>(place[1]),
                                         static_cast<double>(place[2]));
     const Eigen::Vector3d middle_m = side_m() * (middle_voxels.array() + 0.5).matrix();
     tiles.emplace_back((middle_m - sensor_m).norm(), place);
@@ -164,8 +165,7 @@ bool StaticMap::is_kept(const Voxel& voxel) const {
          (!config_.by_majority || voxel.static_points > voxel.moving_points);
 }
 
-void StaticMap::for_each_tile(
-    const std::function<void(const Place&, const Tile&)>& visit) const {
+void StaticMap::for_each_tile(const std::function<void(const Place&, const Tile&)>& visit) const {
   std::set<Place> places = spilled_;
   for (const auto& [place, tile] : tiles_) places.insert(place);
   for (const Place& place : places) {
@@ -220,12 +220,10 @@ void for_each_judged(const ResultScans& scans,
                      const std::function<void(const JudgedScan& scan)>& visit) {
   const std::vector<ScanRow>& rows = scans.rows();
   if (std::ranges::none_of(rows, &ScanRow::judged)) {
-    throw DataError(scans.sequence().recording().files.empty()
-                        ? fs::path(scans.sequence().name())
-                        : scans.sequence().recording().files.front(),
-                    fmt::format("has {}, in which nothing can be seen to move",
-                                counted(rows.size(), "scan")),
-                    "the scans of a drive: a map says nothing of what moved");
+    throw DataError(
+        files_of(scans.sequence().recording()).front(),
+        fmt::format("has {}, in which nothing can be seen to move", counted(rows.size(), "scan")),
+        "the scans of a drive: a map says nothing of what moved");
   }
   Progress progress("static map", rows.size());
   for (std::size_t k = 0; k < rows.size(); ++k) {
