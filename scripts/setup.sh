@@ -28,7 +28,7 @@ case "${1:-}" in
     packages+=(pybind11-dev python3-dev python3-numpy python3-pytest python3-h5py python3-matplotlib
       python3-pandas python3-pip python3-venv python3-setuptools python3-wheel)
     ;;
-  --checks) packages+=(clang clang-format clang-tidy doxygen mypy python3-numpy) with_types=1 ;;
+  --checks) packages+=(codespell clang clang-format clang-tidy doxygen mypy python3-numpy) with_types=1 ;;
   --package) packages+=(pybind11-dev python3-dev python3-numpy dpkg-dev lintian mmdebstrap) ;;
   --cluster) packages+=(snakemake slurm-wlm munge) ;;
   *) echo "usage: setup.sh [--python|--tests|--checks|--package|--page|--cluster]" >&2; exit 2 ;;
