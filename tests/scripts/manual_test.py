@@ -138,6 +138,18 @@ class Manual(unittest.TestCase):
                 self.assertEqual(wrong, [])
 
 
+    @unittest.skipIf(subprocess.run(["/usr/bin/python3", "-c", "import numpy"], capture_output=True, check=False).returncode,
+                     "the program of the study needs numpy")
+    def test_the_study_of_its_page_is_planned(self):
+        page = "docs/studies/study.md"
+        (study,) = re.findall(r"^```yaml\n(.*?)^```", (ROOT / page).read_text(), re.MULTILINE | re.DOTALL)
+        study = study.replace("python3 /home/me/my_network.py", f"/usr/bin/python3 {ROOT}/tests/examples/exec/client.py")
+        answer = typed(page, ["mosbench simulate --layout semantickitti --scene room --scans 8 --seed 1 --out kitti",
+                              "mkdir -p ~/kitti/sequences; mv kitti/sequences/08 ~/kitti/sequences",
+                              f"cat >mine.yaml <<'END'\n{study}END", "mosbench run mine.yaml --dry-run"])[-1]
+        self.assertRegex(answer, r"\n2076 cells: 0 done, 2076 missing, 0 failed")
+
+
 class Mistakes(unittest.TestCase):
     def test_a_wrong_flag_and_a_wrong_command_are_named(self):
         self.assertEqual(unknown_words('mosbench rank DIR --best-of --as latex -o "a --b" # --why'), ["--best-of"])
