@@ -43,8 +43,8 @@ UNTYPED = ("scripts/", "/usr/bin/python3 -m venv", "~/mosbench-venv/", "mosbench
 def blocks(text):
     """Returns [command, lines it prints] in the order of a page, from its blocks of shell commands."""
     commands = []
-    for block in re.findall(r"^```(?:sh)?\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
-        for line in filter(None, block.splitlines()):
+    for kind, block in re.findall(r"^```(\w*)\n(.*?)^```", text, re.MULTILINE | re.DOTALL):
+        for line in filter(None, block.splitlines() if kind in ("", "sh") else []):
             if line.startswith("#"):
                 commands[-1][1].append(line[1:].strip())
             else:
@@ -158,7 +158,7 @@ class Mistakes(unittest.TestCase):
             wrong_output("README.md", f"```\nexport PATH={PROGRAM.parent}:$PATH\nmosbench rank --best-of\n```\n")
 
     def test_a_wrong_line_is_named(self):
-        page = "```\nprintf 'a 1.23 of 20 m\\nb 3\\n'   # why\n#   a  1.2{} m\n#   b {}\n```\n"
+        page = "```text\n# no command\n```\n```\nprintf 'a 1.23 of 20 m\\nb 3\\n'   # why\n#   a  1.2{} m\n#   b {}\n```\n"
         for last, whole in ((3, 3), (4, 3)):
             self.assertEqual(wrong_output("", page.format(last, whole)), [])
         for last, whole, line in ((5, 3, "a  1.25 m"), (3, 4, "b 4")):
