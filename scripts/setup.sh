@@ -2,8 +2,8 @@
 # setup.sh [--python|--tests|--checks|--package|--page|--cluster]: installs the Debian packages for building
 # and testing; with --python also those of the Python package, its tests and its examples; with --checks those
 # of the format and clang checks and of the API pages; with --package those that make and check Debian
-# packages; with --page what tests, lints and builds the report's page: a browser, node and the packages of
-# eval/report/page/package-lock.json; with --cluster Snakemake and Slurm; --tests is --python and --page.
+# packages; with --page what tests, lints and builds the report's page and the site: a browser, node, the packages of
+# eval/report/page/package-lock.json and MkDocs; with --cluster Snakemake and Slurm; --tests is --python and --page.
 # Returns quickly when all are installed.
 # MOSBENCH_WITH_PCL=OFF leaves out PCL, which only tests need and which brings some 400 packages,
 # MOSBENCH_WITH_ROSBAG=OFF the 40 or so of ROS's bag library, which only writing bags needs,
@@ -28,13 +28,13 @@ case "${1:-}" in
     packages+=(pybind11-dev python3-dev python3-numpy python3-pytest python3-h5py python3-matplotlib
       python3-pandas python3-pip python3-venv python3-setuptools python3-wheel)
     ;;
-  --checks) packages+=(clang clang-format clang-tidy doxygen mypy python3-numpy) with_types=1 ;;
+  --checks) packages+=(codespell clang clang-format clang-tidy doxygen mypy python3-numpy) with_types=1 ;;
   --package) packages+=(pybind11-dev python3-dev python3-numpy dpkg-dev lintian mmdebstrap) ;;
   --cluster) packages+=(snakemake slurm-wlm munge) ;;
   *) echo "usage: setup.sh [--python|--tests|--checks|--package|--page|--cluster]" >&2; exit 2 ;;
 esac
 with_page=$(case "${1:-}" in --page | --tests) echo 1 ;; esac)
-[ -z "$with_page" ] || packages+=(chromium fonts-dejavu-core util-linux)
+[ -z "$with_page" ] || packages+=(chromium fonts-dejavu-core util-linux mkdocs mkdocs-material)
 if [ -n "$with_page${with_types:-}" ] && ! command -v npm >/dev/null; then packages+=(nodejs npm); fi
 
 give_up() {

@@ -1,6 +1,7 @@
 """The checks of scripts/check refuse what they should, on texts made here: run by ctest."""
 
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -9,6 +10,7 @@ import unittest.mock
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts/check"))
+import english  # noqa: E402
 import headers  # noqa: E402
 import includes  # noqa: E402
 import mutants  # noqa: E402
@@ -56,6 +58,34 @@ class Paper(unittest.TestCase):
             self.assertIn(expected, said)
 
 
+class English(unittest.TestCase):
+    def test_of_the_project_is_plain(self):
+        done = subprocess.run([ROOT / "scripts/check/english.py"], capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 0, done.stdout)
+
+    def test_long_sentences_are_named_with_their_place(self):
+        long = "A word " + "and a word " * 8  # 26 words
+        wrong = english.wrong_sentences("a.md", f"# T\n\nShort one.\n- {long}\n  ends. Short.\n")
+        self.assertEqual(len(wrong), 1)
+        self.assertRegex(wrong[0], "^a.md:4: 27 words, expected at most 25: A word .* ends.$")
+        for whole in (f"```\n{long} word\n```\n", f"| {long} word |\n", f"`{long}` {long[:-5]}.\n", f"{long[:-5]}: {long[:-5]}.\n"):
+            self.assertEqual(english.wrong_sentences("a.md", whole), [], whole)
+        self.assertEqual(english.wrong_sentences("a.txt", f"Examples:\n  mosbench {long}\n---\nShort.\n"), [])
+
+    def test_banned_phrases_are_named(self):
+        for text, said in (("Points of which few move.", "of which"), ("Things are said here.", "are said"),
+                           ("Yes. What moves is found.", "What ... is"), ("- Of two runs one is best.", "begins with Of")):
+            self.assertRegex("".join(english.wrong_sentences("a.md", text)), said)
+        self.assertEqual(english.wrong_sentences("a.md", "Say what is. Runs of two \"of which\" `of which`.\n"), [])
+
+    @unittest.skipUnless(shutil.which("codespell"), "there is no codespell")
+    def test_mistakes_of_spelling_are_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "a.cpp"
+            file.write_text("// Returns the " + "rec" + "ieved" + " scan.\n")
+            self.assertRegex("".join(english.misspelt([file])), "a.cpp:1: .* ==> received")
+
+
 class Pages(unittest.TestCase):
     def test_of_the_project_are_right(self):
         done = subprocess.run([ROOT / "scripts/check/pages.py"], capture_output=True, text=True, check=False)
@@ -76,7 +106,8 @@ class Pages(unittest.TestCase):
         self.assertEqual(pages.too_long({"docs/a.md": "word " * 10501, "docs/history/b.md": "word " * 11500}),
                          ["docs without history: 10501 words, expected at most 10500",
                           "all pages: 22001 words, expected at most 22000"])
-        self.assertEqual(pages.too_long({"docs/a.md": "word " * 10500, "docs/history/b.md": "word " * 11500}), [])
+        self.assertEqual(pages.too_long({"docs/a.md": "word " * 10500, "docs/history/b.md": "word " * 11500,
+                                         "docs/reference/c.md": "word " * 9000}), [])
 
 
 class Headers(unittest.TestCase):

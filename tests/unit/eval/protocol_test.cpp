@@ -144,20 +144,11 @@ std::string source_file(const char* name) {
   return read_file(std::filesystem::path(MOSBENCH_SOURCE_DIR) / name);
 }
 
-TEST(Protocols, AreDescribedInTheirReadmeByTheFactsOfTheirRows) {
+TEST(Protocols, HaveASectionEachOnTheirPage) {
   const auto sections = sections_of(source_file("docs/protocols/protocols.md"));
   EXPECT_EQ(sections.size(), protocols().size());
-  for (const ProtocolDescription& protocol : describe_protocols()) {
-    ASSERT_TRUE(sections.contains(protocol.name)) << protocol.name;
-    const std::string& text = sections.at(protocol.name);
-    for (const std::string& fact :
-         {"- truth: " + protocol.truth, "- predicted moving: " + protocol.prediction,
-          "- range: " + protocol.range, "- average: " + protocol.aggregation,
-          "- scans: " + protocol.split, "- 0/0: " + protocol.empty_case,
-          "- source: `" + protocol.source + "`"}) {
-      EXPECT_NE(text.find(fact + '\n'), std::string::npos) << protocol.name << ": " << fact;
-    }
-  }
+  for (const ProtocolDescription& protocol : describe_protocols())
+    EXPECT_TRUE(sections.contains(protocol.name)) << protocol.name;
 }
 
 TEST(PredictionFormats, AreAllDescribedInTheReadme) {
