@@ -16,11 +16,12 @@ namespace mosbench {
 /// The folder of `mosbench truth`: a run that kept objects, tracks.json and decisions.json.
 struct TruthFolder {
   std::filesystem::path path;
-  std::vector<Result> runs;                ///< by sequence
-  std::vector<TruthTrack> proposed;        ///< of tracks.json
-  std::vector<Decision> decisions;         ///< in order
-  std::vector<MadeTrack> made;             ///< by edits that hold
-  std::vector<TruthTrack> tracks;          ///< proposed and made that have points, as `sort_for_decisions` orders
+  std::vector<Result> runs;          ///< by sequence
+  std::vector<TruthTrack> proposed;  ///< of tracks.json
+  std::vector<Decision> decisions;   ///< in order
+  std::vector<MadeTrack> made;       ///< by edits that hold
+  std::vector<TruthTrack>
+      tracks;  ///< proposed and made that have points, as `sort_for_decisions` orders
   std::map<std::string, Decided> decided;  ///< by track
 
   std::vector<TruthTrack> undecided() const;
