@@ -34,31 +34,38 @@ class RangeImage {
     }
   }
 
-  /// Returns whether all returns in and around the direction of a place are beyond it; nothing when
-  /// there are none, also none just below, or when something hides it. Above level ground all
-  /// returns of sparse sensors are beyond it.
+  /// Returns whether all returns in and around the direction of a place are beyond it, and the next
+  /// ones below; nothing when there are none, or when something hides it. Those below tell ground:
+  /// above it all returns of a sparse sensor may be beyond.
   std::optional<bool> looks_through(const Eigen::Vector3d& place_m) const {
     constexpr double kBeyondM = 0.5, kBeyondShare = 0.02;
+    constexpr std::size_t kMostBelow = 3;
     const auto middle = cell_of(place_m);
     if (!middle || nearest_m_[*middle] == kNothingM) return std::nullopt;
     const double range_m = place_m.norm(), margin_m = kBeyondM + kBeyondShare * range_m;
     const std::size_t row = *middle / kColumns, column = *middle % kColumns;
     if (nearest_m_[*middle] < range_m - margin_m) return std::nullopt;
-    const std::size_t below = std::max<std::size_t>(row, 1) - 1;
-    bool is_seen_below = false;
-    for (std::size_t r = below; r <= std::min(row + 1, kRows - 1); ++r) {
-      for (const std::size_t c : {column + kColumns - 1, column, column + 1}) {
-        const float nearest_m = nearest_m_[r * kColumns + c % kColumns];
-        if (nearest_m < range_m + margin_m) return false;
-        is_seen_below = is_seen_below || (r == below && nearest_m < kNothingM);
-      }
+    for (std::size_t r = std::max<std::size_t>(row, 1) - 1; r <= std::min(row + 1, kRows - 1);
+         ++r) {
+      if (nearest_around(r, column) < range_m + margin_m) return false;
     }
-    return is_seen_below ? std::optional(true) : std::nullopt;
+    for (std::size_t below = 1; below <= std::min(row, kMostBelow); ++below) {
+      const float nearest_m = nearest_around(row - below, column);
+      if (nearest_m < kNothingM) return nearest_m >= range_m + margin_m;
+    }
+    return std::nullopt;
   }
 
  private:
   static constexpr std::size_t kRows = 180, kColumns = 720;  // degree, half degree
   static constexpr float kNothingM = 1e9F;
+
+  /// In three columns.
+  float nearest_around(std::size_t row, std::size_t column) const {
+    const float* cells = &nearest_m_[row * kColumns];
+    return std::min(
+        {cells[(column + kColumns - 1) % kColumns], cells[column], cells[(column + 1) % kColumns]});
+  }
 
   static std::optional<std::size_t> cell_of(const Eigen::Vector3d& place_m) {
     const double range_m = place_m.norm();

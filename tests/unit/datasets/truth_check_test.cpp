@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -135,54 +136,84 @@ TEST(TruthOfKeyFrames, IsMissingWhereAllScansAreZeros) {
               testing::Contains("all labels of all scans are 0; expected labelled points"));
 }
 
-/// A wall 10 m away, seen from `lowest_deg` on, and in one scan a pole 5 m in front of the sensor.
-class PoleBeforeWall : public Sequence {
+constexpr std::size_t kLookedAt = 20;
+
+Point point_at(double up_deg, double around_deg, double range_m) {
+  constexpr double kRad = 3.14159265358979 / 180;
+  const double level_m = range_m * std::cos(up_deg * kRad);
+  return {static_cast<float>(level_m * std::cos(around_deg * kRad)),
+          static_cast<float>(level_m * std::sin(around_deg * kRad)),
+          static_cast<float>(range_m * std::sin(up_deg * kRad)), 0};
+}
+
+/// Scans of a sensor that stands still.
+class LookingScans : public Sequence {
  public:
-  static constexpr std::size_t kScans = 40, kPoleScan = 20;
-  explicit PoleBeforeWall(int lowest_deg) : lowest_deg_(lowest_deg) {
-    for (std::size_t k = 0; k < kScans; ++k) {
-      ScanEntry& entry = mutable_recording().scans.emplace_back();
-      entry.stem = std::to_string(k);
+  using Rays = std::function<void(std::size_t scan_index, std::vector<Point>& points)>;
+  explicit LookingScans(Rays rays) : rays_(std::move(rays)) {
+    for (std::size_t k = 0; k < 2 * kLookedAt; ++k) {
+      mutable_recording().scans.emplace_back().stem = std::to_string(k);
     }
   }
   using Sequence::read;
   void read(std::size_t scan_index, Frame& frame) const override {
     describe(scan_index, frame);
-    for (int up_deg = lowest_deg_; up_deg <= 10; ++up_deg) {
-      for (int around = -40; around <= 40; ++around) {
-        const double a = 0.5 * around * kRad, e = (up_deg + 0.5) * kRad;
-        const bool is_pole = scan_index == kPoleScan && around >= -1 && around <= 1;
-        const double x = is_pole ? 5 : 10;
-        frame.points.push_back({static_cast<float>(x), static_cast<float>(x * std::tan(a)),
-                                static_cast<float>(x / std::cos(a) * std::tan(e)), 0});
-      }
-    }
+    rays_(scan_index, frame.points);
   }
   std::vector<std::uint32_t> read_truth(std::size_t) const override { return {}; }
 
  private:
-  static constexpr double kRad = 3.14159265358979 / 180;
-  int lowest_deg_;
+  Rays rays_;
 };
 
-/// How many points of the scan with the pole are what, those of the pole apart.
+/// A wall 10 m away in rows from `lowest_deg` on, in one scan with a pole 5 m away.
+LookingScans pole_before_wall(int lowest_deg, int step_deg) {
+  return LookingScans([=](std::size_t scan_index, std::vector<Point>& points) {
+    for (int up_deg = lowest_deg; up_deg <= 10; up_deg += step_deg) {
+      for (int around = -40; around <= 40; ++around) {
+        const bool is_pole = scan_index == kLookedAt && std::abs(around) <= 1;
+        points.push_back(point_at(up_deg + 0.5, 0.5 * around, is_pole ? 5 : 10));
+      }
+    }
+  });
+}
+
+/// How many points nearer than 9 m are what, and those farther.
 std::map<std::pair<bool, Stay>, std::size_t> counted_stays(const Sequence& sequence) {
-  const Frame frame = sequence.read(PoleBeforeWall::kPoleScan);
-  const std::vector<Stay> stays = stays_of(sequence, PoleBeforeWall::kPoleScan, frame.points);
+  const Frame frame = sequence.read(kLookedAt);
+  const std::vector<Stay> stays = stays_of(sequence, kLookedAt, frame.points);
   std::map<std::pair<bool, Stay>, std::size_t> counts;
   for (std::size_t i = 0; i < stays.size(); ++i) {
-    ++counts[{frame.points[i].x < 9, stays[i]}];
+    const Point& point = frame.points[i];
+    ++counts[{std::hypot(point.x, point.y, point.z) < 9, stays[i]}];
   }
   return counts;
 }
 
-TEST(PointsThatOtherScansLookAt, LeaveOnlyWhereReturnsJustBelowAreBeyondToo) {
-  auto whole = counted_stays(PoleBeforeWall(-10));
-  const std::size_t pole_points = 3 * 21;
-  EXPECT_EQ((whole[{true, Stay::kLeaves}]), pole_points - 3) << "but for the lowest row";
-  EXPECT_EQ((whole[{true, Stay::kUnseen}]), 3U);
-  EXPECT_EQ((whole[{false, Stay::kLeaves}]), 0U);
-  EXPECT_GT((whole[{false, Stay::kStays}]), 1000U);
+TEST(PointsThatOtherScansLookAt, LeaveWhereAllReturnsAndTheNextBelowAreBeyond) {
+  for (const int step_deg : {1, 2}) {
+    auto counts = counted_stays(pole_before_wall(-10, step_deg));
+    const std::size_t rows = 20U / static_cast<unsigned>(step_deg) + 1U;
+    EXPECT_EQ((counts[{true, Stay::kLeaves}]), 3 * (rows - 1)) << "but for the lowest row";
+    EXPECT_EQ((counts[{true, Stay::kUnseen}]), 3U);
+    EXPECT_EQ((counts[{false, Stay::kLeaves}]), 0U);
+    EXPECT_GT((counts[{false, Stay::kStays}]), 700U);
+  }
+}
+
+TEST(PointsThatOtherScansLookAt, StayOnGroundThatRowsHitNearerAndFarther) {
+  const auto ground = [](std::vector<Point>& points, double up_deg) {
+    const double range_m = 0.7 / std::sin(-up_deg * 3.14159265358979 / 180);
+    for (int around = -40; around <= 40; ++around) {
+      points.push_back(point_at(up_deg, 0.5 * around + 0.25, range_m));
+    }
+  };
+  auto counts = counted_stays(LookingScans([&](std::size_t k, std::vector<Point>& points) {
+    if (k == kLookedAt) return ground(points, -2.5);
+    ground(points, -2.05);
+    ground(points, -4.5);
+  }));
+  EXPECT_EQ((counts[{false, Stay::kStays}]), 81U);
 }
 
 TEST(PointsThatOtherScansLookAt, AreOfScansWithOthersOnBothSides) {
