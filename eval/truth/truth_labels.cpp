@@ -141,7 +141,8 @@ fs::path corrected_file(const fs::path& folder, const std::string& stem) {
   throw DataError(folder, "has no labels of scan " + stem, "a file of them for each scan");
 }
 
-/// Returns what somebody says of each point of a scan.
+/// Returns what somebody says of each point of a scan. Unsure says nothing: labels of others have
+/// its id wherever nobody looked.
 std::vector<Decided> corrected_scan(const ResultScans& scans, std::size_t k,
                                     const fs::path& folder) {
   static const LabelTable classes(protocol_named("mapmos").truth);
@@ -182,7 +183,8 @@ std::vector<Decision> decisions_by(const TruthFolder& truth, const ResultScans& 
     if (track.sequence != scans.result().sequence.text()) continue;
     const Decided now = before.at(track.number).label;
     for (const auto& [decided, count] : points[track.number]) {
-      if (2 * count > track.points && decided != now) decisions.push_back({track.id(), decided});
+      if (decided == Decided::kUnsure || decided == now) continue;
+      if (2 * count > track.points) decisions.push_back({track.id(), decided});
     }
   }
   return decisions;
@@ -209,7 +211,8 @@ TruthImport import_truth(TruthFolder& truth, const std::optional<fs::path>& data
                   [&](const TruthScan& scan, const std::vector<Decided>& said) {
                     const auto labels = labels_of_scan(scan, tracks, shares);
                     for (std::size_t i = 0; i < said.size(); ++i) {
-                      if (labels[i] != id_of(said[i])) ++imported.still_differ;
+                      const bool is_said = said[i] != Decided::kUnsure;
+                      if (is_said && labels[i] != id_of(said[i])) ++imported.still_differ;
                     }
                   });
     imported.points += shares.points;

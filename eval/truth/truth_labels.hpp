@@ -36,8 +36,9 @@ struct TruthImport {
 };
 
 /// Decides on tracks by the labels in `corrected`/<sequence>/labels, in any format that is truth,
-/// wherever more than half of the points of a track are not as it is decided or guessed. Throws as
-/// `write_truth`, and DataError for a scan without labels, or for labels of other points.
+/// wherever more than half of the points of a track are not as it is decided or guessed; id 0 says
+/// nothing. Throws as `write_truth`, and DataError for a scan without labels, or for labels of
+/// other points.
 TruthImport import_truth(TruthFolder& truth, const std::optional<std::filesystem::path>& data,
                          const std::filesystem::path& corrected);
 

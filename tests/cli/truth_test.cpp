@@ -206,6 +206,12 @@ TEST_F(Truth, ImportsWhatAnotherProgramCorrected) {
   ASSERT_EQ(same.exit_code, 0) << same.err;
   EXPECT_THAT(same.out, HasSubstr("0 decisions by the labels in " + own + "; 0 of "));
   EXPECT_FALSE(is_there(folder_ / "truth/decisions.json"));
+  // Nobody looked at one scan.
+  const auto kept = written(19);
+  write_labels(folder_ / "own/room/labels" / (cli::stem(19) + ".label"),
+               std::vector<std::uint32_t>(kept.size()));
+  EXPECT_THAT(import().out, HasSubstr("0 decisions by the labels in " + own + "; 0 of "));
+  write_labels(folder_ / "own/room/labels" / (cli::stem(19) + ".label"), kept);
   // Somebody says that the box stands, but for 7 points, and writes one scan as a table.
   std::size_t left = 7;
   const auto file = [&](std::size_t scan, const char* extension) {
