@@ -74,7 +74,7 @@ class PoseSearch {
   BagTransforms run() {
     std::optional<Way> found = asked_.pose_topic ? of_topic(*asked_.pose_topic) : of_first_kind();
     if (found) {
-      std::vector<std::string> doubts;
+      std::vector<std::string> doubts = found->chain.doubts();
       if (!found->doubt.empty()) doubts.push_back(std::move(found->doubt));
       return {std::move(found->chain), std::move(found->source), ignored(), std::move(doubts)};
     }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "datasets/text/errors.hpp"
+#include "datasets/text/numbers.hpp"
 
 namespace mosbench {
 namespace {
@@ -17,6 +18,41 @@ std::string extent_of(const PoseTrack& track) {
     return fmt::format("at {:.3f} s alone", seconds_of(track.first_ns()));
   return fmt::format("from {:.3f} to {:.3f} s", seconds_of(track.first_ns()),
                      seconds_of(track.last_ns()));
+}
+
+using StampedPoses = std::vector<std::pair<std::int64_t, Pose>>;
+
+double apart_m(const Pose& a, const Pose& b) {
+  constexpr double kReach_m = 10.0;
+  const Pose change = a.inverse() * b;
+  return change.translation().norm() + kReach_m * Eigen::AngleAxisd(change.linear()).angle();
+}
+
+/// Returns how far apart the poses are that two publishers give one frame: fixed poses that differ,
+/// or poses that go to and fro with every step, which no smooth way and no noise does. Else 0.
+double publishers_apart_m(StampedPoses poses, bool always) {
+  constexpr double kLeast_m = 0.1;
+  if (always) {
+    const double most_m = apart_m(poses.front().second, poses.back().second);
+    return most_m > 1e-3 ? most_m : 0.0;
+  }
+  constexpr std::size_t kFewest = 10;
+  if (poses.size() < kFewest) return 0.0;
+  std::ranges::stable_sort(poses, {}, &StampedPoses::value_type::first);
+  std::vector<Eigen::Vector3d> steps_m;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    steps_m.push_back(poses[i].second.translation() - poses[i - 1].second.translation());
+  }
+  std::vector<double> turns_m;
+  std::size_t turns = 0;
+  for (std::size_t i = 1; i < steps_m.size(); ++i) {
+    const Eigen::Vector3d turn_m = 0.5 * (steps_m[i] - steps_m[i - 1]);
+    if (i > 1) turns += turn_m.dot(steps_m[i - 1] - steps_m[i - 2]) < 0.0;
+    turns_m.push_back(turn_m.norm());
+  }
+  if (10 * turns < 9 * (turns_m.size() - 1)) return 0.0;
+  const double usual_m = quantile(std::move(turns_m), 0.5, QuantileRule::kUpper);
+  return usual_m > kLeast_m ? usual_m : 0.0;
 }
 
 }  // namespace
@@ -57,7 +93,6 @@ TransformTree::TransformTree(const std::vector<StampedTransform>& transforms,
                              const std::vector<StampedTransform>& always,
                              const std::filesystem::path& file)
     : file_(file) {
-  using Edge = std::pair<std::string, std::string>;
   const auto add = [&](const std::vector<StampedTransform>& source, bool holds_always) {
     std::map<Edge, std::vector<std::pair<std::int64_t, Pose>>> poses_of;
     for (const StampedTransform& transform : source) {
@@ -66,7 +101,16 @@ TransformTree::TransformTree(const std::vector<StampedTransform>& transforms,
     }
     for (auto& [edge, poses] : poses_of) {
       PoseTrack& track = parents_of_[edge.first][edge.second];
-      if (!track.moves()) track = PoseTrack(std::move(poses), holds_always);
+      if (track.moves()) continue;
+      if (const double apart_m = publishers_apart_m(poses, holds_always); apart_m > 0.0) {
+        doubts_of_[edge] = fmt::format(
+            "{} from {} is told in two ways that are {:.2f} m apart{}", edge.second, edge.first,
+            apart_m,
+            holds_always ? ": the last is taken" : ", in turns: two nodes seem to send it");
+      }
+      // tf2 keeps the last.
+      if (holds_always) poses.erase(poses.begin(), std::prev(poses.end()));
+      track = PoseTrack(std::move(poses), holds_always);
     }
   };
   add(transforms, false);
@@ -118,6 +162,8 @@ TransformChain TransformTree::chain(const std::vector<std::string>& way, double 
   for (std::size_t i = 0; i + 1 < way.size(); ++i) {
     chain.links_.insert(chain.links_.begin(),
                         {way[i + 1] + " from " + way[i], parents_of_.at(way[i]).at(way[i + 1])});
+    const auto doubt = doubts_of_.find({way[i], way[i + 1]});
+    if (doubt != doubts_of_.end()) chain.doubts_.push_back(doubt->second);
   }
   return chain;
 }

@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "datasets/rosbag/ros_messages.hpp"
@@ -24,6 +25,8 @@ class TransformChain {
   /// Returns the first transform that does not cover the time, and when it is known: "odom from
   /// base_link is known from 3.000 to 9.000 s"; empty where all do.
   std::string lacks(std::int64_t stamp_ns) const;
+  /// Returns what is odd about its transforms: that two publishers contradict each other.
+  const std::vector<std::string>& doubts() const { return doubts_; }
 
  private:
   friend class TransformTree;
@@ -32,6 +35,7 @@ class TransformChain {
     PoseTrack track;
   };
   std::vector<Link> links_;
+  std::vector<std::string> doubts_;
   std::int64_t most_gap_ns_ = 0;
 };
 
@@ -53,7 +57,9 @@ class TransformTree {
   TransformChain chain(const std::vector<std::string>& way, double max_gap_s) const;
 
  private:
+  using Edge = std::pair<std::string, std::string>;  ///< child, parent
   std::map<std::string, std::map<std::string, PoseTrack>> parents_of_;
+  std::map<Edge, std::string> doubts_of_;
   const std::filesystem::path& file_;
 };
 
