@@ -137,18 +137,32 @@ std::vector<std::string> TransformTree::way(const std::string& from, const std::
   return frames;
 }
 
+bool TransformTree::moves_above(const std::string& child, const std::string& parent,
+                                std::set<std::string> seen) const {
+  if (parents_of_.at(child).at(parent).moves()) return true;
+  const auto above = parents_of_.find(parent);
+  if (above == parents_of_.end() || !seen.insert(parent).second) return false;
+  return std::ranges::any_of(
+      above->second, [&](const auto& next) { return moves_above(parent, next.first, seen); });
+}
+
 std::vector<std::string> TransformTree::ancestors(const std::string& from) const {
   std::vector<std::string> frames = {from};
   for (auto parents = parents_of_.find(from);
        frames.back() != "map" && parents != parents_of_.end();
        parents = parents_of_.find(frames.back())) {
-    const std::string& parent = parents->second.begin()->first;
-    if (parents->second.size() > 1) {
+    std::vector<std::string> moving;
+    for (const auto& [above, track] : parents->second) {
+      if (moves_above(frames.back(), above, {frames.back()})) moving.push_back(above);
+    }
+    if (parents->second.size() > 1 && moving.size() != 1) {
       throw DataError(file_,
-                      "frame " + frames.back() + " has the parents " + parent + " and " +
+                      "frame " + frames.back() + " has the parents " +
+                          parents->second.begin()->first + " and " +
                           std::next(parents->second.begin())->first,
                       "one, or the map's frame in " + option("map_frame"));
     }
+    const std::string parent = moving.size() == 1 ? moving.front() : parents->second.begin()->first;
     // Parents may form a loop in a damaged bag.
     if (std::ranges::find(frames, parent) != frames.end()) break;
     frames.push_back(parent);

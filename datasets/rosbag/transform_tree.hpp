@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -50,13 +51,17 @@ class TransformTree {
   /// several parents; empty when `to` is no ancestor.
   std::vector<std::string> way(const std::string& from, const std::string& to) const;
   /// Returns the frames from `from` up to "map", else to the root. Throws DataError where one has
-  /// two parents.
+  /// two parents, unless only one leads to a transform that changes.
   std::vector<std::string> ancestors(const std::string& from) const;
 
   /// Returns the transforms along a way, with holes longer than a time.
   TransformChain chain(const std::vector<std::string>& way, double max_gap_s) const;
 
  private:
+  /// Whether the transform to a parent changes, or one above it.
+  bool moves_above(const std::string& child, const std::string& parent,
+                   std::set<std::string> seen) const;
+
   using Edge = std::pair<std::string, std::string>;  ///< child, parent
   std::map<std::string, std::map<std::string, PoseTrack>> parents_of_;
   std::map<Edge, std::string> doubts_of_;

@@ -237,6 +237,39 @@ TEST_P(BagPoses, OfTwoMountsAreThoseOfTheLast) {
       Contains(HasSubstr("base from lidar is told in two ways that are 2.00 m apart: the last")));
 }
 
+TEST_P(BagPoses, OfTheParentThatMovesAreTaken) {
+  const Drive drive = drive_of([](Drive& to, std::int64_t stamp_ns, double k) {
+    add_tf(to, {stamp_ns, "a_camera", "lidar", pose_at_x(5.0)});
+    add_tf(to, {stamp_ns, "base", "lidar", pose_at_x(1.0)});
+    add_tf(to, {stamp_ns, "odom", "base", pose_at_x(k)});
+  });
+  EXPECT_EQ(xs_of(open(drive)).back(), 12.0);
+}
+
+TEST_P(BagPoses, NeedScansThatNameAFrame) {
+  Drive drive;
+  for (int k = 0; k < 12; ++k) {
+    add_cloud(drive, at(k), "");
+    add_tf(drive, {at(k), "map", "lidar", pose_at_x(k)});
+  }
+  EXPECT_THAT(error_of(drive), AllOf(HasSubstr("the scans name no frame"), HasSubstr("/tf: lidar, "
+                                                                                     "map")));
+}
+
+TEST_P(BagPoses, OfOdometryOfAnotherFrameAreOffered) {
+  const Drive drive = drive_of([](Drive& to, std::int64_t stamp_ns, double k) {
+    add_pose(to, kOdometry, stamp_ns, k, "body");
+    add_tf(to, {stamp_ns, "base", "lidar", pose_at_x(1.0)});
+  });
+  const char* offer = "pose_topic /pose@lidar";
+  EXPECT_THAT(open(drive).recording().doubts, Contains(HasSubstr(offer)));
+  EXPECT_THAT(open(drive, {.pose_topic = "/pose@lidar"}).recording().doubts, testing::IsEmpty());
+  const Drive without = drive_of([](Drive& to, std::int64_t stamp_ns, double k) {
+    add_pose(to, kOdometry, stamp_ns, k, "body");
+  });
+  EXPECT_THAT(error_of(without), HasSubstr(offer));
+}
+
 TEST_P(BagPoses, NameTheTransformThatDoesNotCoverTheScans) {
   const Drive drive = drive_of([](Drive& to, std::int64_t stamp_ns, double k) {
     if (k == 0) add_tf(to, {stamp_ns - 1, "map", "odom", Pose::Identity()});
