@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -111,7 +112,30 @@ bool fits_clearly_better(const Spread& other, const Spread& told) {
           is_clearly_below(0.5, other.of_neighbours, told.of_neighbours));
 }
 
+/// The share of numbers that no scan holds: neither 0 nor from 1e-9 to 1e7.
+template <typename Number>
+double odd_share(std::string_view bytes, bool is_big_endian) {
+  std::size_t odd = 0;
+  for (std::size_t draw = 0; draw < kPairs; ++draw) {
+    std::array<char, sizeof(Number)> raw{};
+    const std::size_t at = scatter_bits(draw) % (bytes.size() / raw.size());
+    std::memcpy(raw.data(), bytes.data() + at * raw.size(), raw.size());
+    if (is_big_endian) std::ranges::reverse(raw);
+    const double size = std::abs(static_cast<double>(std::bit_cast<Number>(raw)));
+    odd += size != 0.0 && !(size > 1e-9 && size < 1e7);
+  }
+  return static_cast<double>(odd) / static_cast<double>(kPairs);
+}
+
 }  // namespace
+
+std::string_view other_bin_numbers(std::string_view bytes) {
+  constexpr double kMany = 0.1, kFew = 0.01;
+  if (bytes.size() < kFewestPoints * sizeof(Point)) return "";
+  if (odd_share<float>(bytes, false) < kMany) return "";
+  if (odd_share<float>(bytes, true) < kFew) return "big-endian float32";
+  return odd_share<double>(bytes, false) < kFew ? "float64" : "";
+}
 
 std::optional<std::size_t> other_bin_columns(std::string_view bytes, std::size_t columns) {
   if (bytes.size() < kFewestPoints * columns * sizeof(float)) return std::nullopt;

@@ -26,6 +26,10 @@ inline constexpr std::size_t kMostBinColumns = 7;
 /// standard errors.
 std::optional<std::size_t> other_bin_columns(std::string_view bytes, std::size_t columns);
 
+/// Returns what the numbers of a .bin scan clearly are instead of little-endian float32; empty
+/// where they are these, or nothing is clear.
+std::string_view other_bin_numbers(std::string_view bytes);
+
 /// Returns the points of a scan stored as `columns` little-endian float32 per point, at least
 /// three: x y z intensity, metres, and others that are left out, as nuScenes adds the ring. The
 /// intensity of three is 0. No bytes are an empty scan; NaN and infinite values are kept. Throws

@@ -188,9 +188,10 @@ std::vector<std::uint32_t> labels_in(const PcdRecords& records, const std::files
 
 std::vector<double> times_in(const PcdRecords& records, const std::filesystem::path& file) {
   if (records.head.points() == 0) return {};
-  const CloudField* field = find_time_field(records.head);
-  if (field == nullptr) throw DataError(file, "the points have no times", kTimeFields);
-  return numbers_of(records.head, *field, records.bytes, file);
+  if (find_time_field(records.head) == nullptr) {
+    throw DataError(file, "the points have no times", kTimeFields);
+  }
+  return times_of(records.head, records.bytes, file);
 }
 
 }  // namespace

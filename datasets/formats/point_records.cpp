@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <type_traits>
 
 #include "datasets/text/errors.hpp"
@@ -138,6 +139,18 @@ std::string in_small_letters(std::string_view name) {
   return letters;
 }
 
+/// The fields of times, those with a usual name first.
+std::vector<const CloudField*> time_fields(const CloudHead& head) {
+  std::vector<const CloudField*> fields;
+  for (const CloudField& field : head.fields) {
+    if (is_time_field(field.name)) fields.push_back(&field);
+  }
+  std::stable_partition(fields.begin(), fields.end(), [](const CloudField* field) {
+    return std::ranges::find(kUsualTimeFields, field->name) != kUsualTimeFields.end();
+  });
+  return fields;
+}
+
 }  // namespace
 
 const CloudField* find_field(const CloudHead& head, std::string_view name) {
@@ -178,14 +191,29 @@ bool is_time_field(std::string_view name) {
 }
 
 const CloudField* find_time_field(const CloudHead& head) {
-  const auto is_usual = [](std::string_view name) {
-    return std::ranges::find(kUsualTimeFields, name) != kUsualTimeFields.end();
-  };
-  auto field = std::ranges::find_if(head.fields, is_usual, &CloudField::name);
-  if (field == head.fields.end()) {
-    field = std::ranges::find_if(head.fields, is_time_field, &CloudField::name);
+  const std::vector<const CloudField*> fields = time_fields(head);
+  return fields.empty() ? nullptr : fields.front();
+}
+
+std::vector<double> times_of(const CloudHead& head, std::string_view bytes,
+                             const std::filesystem::path& file) {
+  std::vector<double> seconds, nanoseconds, first;
+  for (const CloudField* field : time_fields(head)) {
+    if (!first.empty() && !is_one_number(head, *field)) continue;
+    std::vector<double> times = numbers_of(head, *field, bytes, file);
+    if (first.empty()) first = times;
+    const std::string letters = in_small_letters(field->name);
+    if (letters.ends_with("nanosecond") || letters.ends_with("nsec")) {
+      nanoseconds = std::move(times);
+    } else if (letters.ends_with("timesecond") || letters.ends_with("psec")) {
+      seconds = std::move(times);
+    } else if (std::ranges::adjacent_find(times, std::not_equal_to()) != times.end()) {
+      return times;
+    }
   }
-  return field == head.fields.end() ? nullptr : &*field;
+  if (seconds.empty() || nanoseconds.empty()) return first;
+  for (std::size_t i = 0; i < seconds.size(); ++i) nanoseconds[i] += 1e9 * seconds[i];
+  return nanoseconds;
 }
 
 bool is_label_field(std::string_view name) {

@@ -60,6 +60,11 @@ bool is_time_field(std::string_view name);
 /// there is none.
 const CloudField* find_time_field(const CloudHead& head);
 
+/// Returns when points were measured, as stored: by the first such field whose numbers differ; of
+/// fields with seconds and nanoseconds the sum, in nanoseconds. Empty when there is none.
+std::vector<double> times_of(const CloudHead& head, std::string_view bytes,
+                             const std::filesystem::path& file);
+
 /// What an error expects where points have no labels.
 inline constexpr const char* kLabelFields = "a field label or scalar_label";
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "datasets/text/numbers.hpp"
@@ -54,6 +55,13 @@ bool goes_on(std::span<const double> sorted, double first, double last, std::siz
 double usual_span(std::span<const double> sorted) {
   const auto skipped = static_cast<std::size_t>(0.05 * static_cast<double>(sorted.size() - 1));
   return sorted[sorted.size() - 1 - skipped] - sorted[skipped];
+}
+
+/// Whether many points have one time, as those of a scan that lost its times.
+bool are_at_once(std::span<const double> times) {
+  constexpr std::size_t kMany = 100;
+  return times.size() >= kMany &&
+         std::ranges::adjacent_find(times, std::not_equal_to()) == times.end();
 }
 
 /// From 0 to 1, whatever the sensor: shares, unless a sweep lasts a second.
@@ -162,6 +170,10 @@ void PointClock::judge_unit(std::span<const StoredTimes> scans) {
   }
   if (span == 0.0) {
     text_ = "not used, they are all the same within a scan";
+    // Zeros are those of scans that were taken, or moved to, one instant.
+    is_odd_ = std::ranges::any_of(scans, [](const StoredTimes& scan) {
+      return std::ranges::any_of(scan.times, [](double time) { return time != 0.0; });
+    });
     return;
   }
   is_odd_ = true;
@@ -219,7 +231,7 @@ void PointClock::count_bad(std::span<const StoredTimes> scans) {
     if (scan.times.empty()) continue;
     const std::vector<std::int64_t> times_ns = after_stamp_ns(scan);
     const auto bad = static_cast<std::size_t>(std::ranges::count(times_ns, kNoTime));
-    raw_scans += times_ns.empty();
+    raw_scans += times_ns.empty() || are_at_once(scan.times);
     bad_points += bad;
     scans_of_bad += bad > 0;
   }

@@ -67,7 +67,7 @@ class PointClock {
   std::vector<std::int64_t> after_stamp_ns(const StoredTimes& scan) const;
 
   bool knows_unit() const { return unit_.has_value(); }
-  /// Whether the times differ, but in no unit of time.
+  /// Whether the times differ in no unit of time, or are all the same but not 0.
   bool is_odd() const { return is_odd_; }
   /// "us since the scan's stamp, span 99.8 ms", or why the times are not used.
   const std::string& text() const { return text_; }

@@ -95,7 +95,11 @@ void check_usual_bin_columns(std::span<const StemFile> scans) {
   for (const std::size_t i : std::set{std::size_t{0}, scans.size() / 2, scans.size() - 1}) {
     const std::filesystem::path& file = scans[i].file;
     if (!has_extension(file, ".bin") || file.string().ends_with(kNuscenesEnd)) continue;
-    const auto columns = other_bin_columns(read_file(file), kUsualBinColumns);
+    const std::string bytes = read_file(file);
+    if (const std::string_view numbers = other_bin_numbers(bytes); !numbers.empty()) {
+      throw DataError(file, fmt::format("holds {}", numbers), "little-endian float32");
+    }
+    const auto columns = other_bin_columns(bytes, kUsualBinColumns);
     if (!columns) continue;
     throw DataError(file,
                     fmt::format("seems to hold {} float32 per point rather than {} (x y z "

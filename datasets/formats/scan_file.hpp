@@ -38,8 +38,8 @@ std::vector<Point> read_scan(const std::filesystem::path& file, std::size_t bin_
 ScanParts read_scan_parts(const std::filesystem::path& file, std::size_t bin_columns,
                           const WantedParts& wanted);
 
-/// Looks into some of the scans, if they are .bin files, whether they have four float32 per point,
-/// which nothing in them says. Throws DataError where they clearly have others.
+/// Looks into some of the scans, if they are .bin files, whether they have four little-endian
+/// float32 per point, which nothing in them says. Throws DataError where they clearly have others.
 void check_usual_bin_columns(std::span<const StemFile> scans);
 
 /// What the size or the header of a scan file says.

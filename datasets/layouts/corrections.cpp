@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
+#include "datasets/formats/point_range.hpp"
 #include "datasets/sequence/corrected_sequence.hpp"
 #include "datasets/sequence/ego_points.hpp"
 #include "datasets/sequence/scan_range.hpp"
 #include "datasets/text/errors.hpp"
+#include "datasets/text/text.hpp"
 
 namespace mosbench {
 namespace {
@@ -34,6 +37,49 @@ std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
   const std::optional<Deskew> by = deskew_of(*sequence, reading);
   return later || !by ? std::move(sequence) : deskewed(std::move(sequence), *by);
 }
+
+/// No LiDAR sees as far: drivers store such numbers for missing returns.
+bool is_beyond_sight(const Point& point) {
+  constexpr double kFarthest_m = 1e4;
+  return is_finite(point) && range_m(point) > kFarthest_m;
+}
+
+/// A sequence whose points beyond sight are missing returns.
+class WithinSight : public SequenceAround {
+ public:
+  explicit WithinSight(std::unique_ptr<Sequence> inner) : SequenceAround(std::move(inner)) {
+    constexpr std::size_t kLooked = 8;
+    std::size_t points = 0, beyond = 0;
+    for (std::size_t i = 0; i < std::min(kLooked, size()); ++i) {
+      const Frame frame = scan_or_none(i * size() / std::min(kLooked, size()));
+      points += frame.points.size();
+      beyond += static_cast<std::size_t>(std::ranges::count_if(frame.points, is_beyond_sight));
+    }
+    if (beyond == 0) return;
+    add_doubt(
+        fmt::format("{} of {} looked at are more than 10 km away: such points are taken for "
+                    "missing returns",
+                    beyond, counted(points, "point")));
+  }
+
+  using Sequence::read;
+  void read(std::size_t scan_index, Frame& frame) const override {
+    SequenceAround::read(scan_index, frame);
+    for (Point& point : frame.points) {
+      if (is_beyond_sight(point)) point = {0, 0, 0, 0};
+    }
+  }
+
+ private:
+  /// Returns nothing of a damaged scan, which reading it says.
+  Frame scan_or_none(std::size_t scan_index) const {
+    try {
+      return inner().read(scan_index);
+    } catch (const DataError&) {
+      return {};
+    }
+  }
+};
 
 }  // namespace
 
@@ -65,6 +111,7 @@ bool deskews_by_refined_poses(const Reading& reading) {
 }
 
 std::unique_ptr<Sequence> corrected(std::unique_ptr<Sequence> sequence, const Reading& reading) {
+  sequence = std::make_unique<WithinSight>(std::move(sequence));
   if (reading.drop_scans == Drop::kAuto) sequence = without_useless_scans(std::move(sequence));
   if (reading.hdl64_correction) sequence = with_hdl64_correction(std::move(sequence));
   // What is mounted stays in the frame in which points were measured.

@@ -5,6 +5,7 @@
 #include <regex>
 #include <tuple>
 
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/rosbag/bag_reader.hpp"
 #include "datasets/text/errors.hpp"
 
@@ -74,6 +75,20 @@ void add_doubt(BagParts& parts, const std::string& doubt) {
   parts.doubt += (parts.doubt.empty() ? "" : "; ") + doubt;
 }
 
+/// Adds what the recorder did not close, beside the bag that it goes on from.
+void doubt_about_active(BagParts& parts) {
+  const auto last = part_name(parts.files.back());
+  if (!last) return;
+  for (const StemFile& active : list_by_stem(parts.files.back().parent_path(), {".active"})) {
+    const auto name = part_name(active.file.stem());
+    if (!name || std::tie(name->drive, name->ending) != std::tie(last->drive, last->ending)) {
+      continue;
+    }
+    add_doubt(parts, active.file.filename().string() +
+                         " was not closed by its recorder and is left out (rosbag reindex)");
+  }
+}
+
 }  // namespace
 
 std::vector<BagParts> group_parts(const std::vector<fs::path>& bags) {
@@ -108,6 +123,7 @@ std::vector<BagParts> group_parts(const std::vector<fs::path>& bags) {
     if (!missing.empty()) add_doubt(found.back(), missing);
     last = &name;
   }
+  for (BagParts& one : found) doubt_about_active(one);
   // Files before folders, as they were given.
   std::ranges::stable_sort(found, {}, [&](const BagParts& one) {
     return std::ranges::find(bags, one.files.front()) - bags.begin();

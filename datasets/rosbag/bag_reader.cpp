@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "datasets/disk/files.hpp"
+#include "datasets/disk/folder_listing.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/rosbag/chunk_reader.hpp"
 #include "datasets/rosbag/mcap_record.hpp"
@@ -31,13 +32,15 @@ constexpr std::array<std::string_view, 5> kBagNames = {".bag", ".mcap", ".db3", 
 class JoinedBag : public BagReader {
  public:
   JoinedBag(const fs::path& path, std::vector<std::unique_ptr<const BagReader>> parts,
-            std::vector<std::string> remarks)
+            std::vector<std::string> remarks, std::vector<std::string> doubts = {})
       : BagReader(path), parts_(std::move(parts)) {
     files_.clear();
     remarks_ = std::move(remarks);
+    doubts_ = std::move(doubts);
     for (const auto& part : parts_) {
       files_.insert(files_.end(), part->files().begin(), part->files().end());
       remarks_.insert(remarks_.end(), part->remarks().begin(), part->remarks().end());
+      doubts_.insert(doubts_.end(), part->doubts().begin(), part->doubts().end());
       for (const BagConnection& connection : part->connections()) add(connection);
     }
   }
@@ -99,10 +102,10 @@ class UnpackedBag : public BagReader {
     decompress_zstd_file(file, unpacked);
     bag_ = naming(path_, [&] { return opened(unpacked); });
     for (const BagConnection& connection : bag_->connections()) add(connection);
-    remarks_ = bag_->remarks();
+    doubts_ = bag_->doubts();
     const std::string number = unpacked.filename().string();
-    for (std::string& remark : remarks_) {
-      if (remark.starts_with(number)) remark.replace(0, number.size(), file.filename().string());
+    for (std::string& doubt : doubts_) {
+      if (doubt.starts_with(number)) doubt.replace(0, number.size(), file.filename().string());
     }
   }
 
@@ -159,8 +162,22 @@ class UnpackedBag : public BagReader {
   std::unique_ptr<const BagReader> bag_;
 };
 
+/// What a file is that is no bag, by its first bytes; empty where these tell nothing.
+std::string_view kind_of(std::string_view start) {
+  if (start.empty()) return "is empty";
+  if (start.find_first_not_of('\0') == start.npos)
+    return "begins with zeros: it was not copied whole";
+  if (start.starts_with("PK\3\4")) return "is a zip archive";
+  if (start.starts_with("\x1f\x8b")) return "is packed by gzip";
+  if (start.starts_with("<")) return "seems to be a web page";
+  return "";
+}
+
 std::unique_ptr<const BagReader> open_bag_file(const fs::path& file) {
   const std::string start = read_start(file, kSqliteStart.size());
+  if (const std::string_view kind = kind_of(start); !kind.empty()) {
+    throw DataError(file, std::string(kind), "a bag: .bag, .mcap or .db3, unpacked");
+  }
   if (start.starts_with(kMcapMagic)) return open_mcap(file);
   if (start.starts_with(kSqliteStart)) return open_sqlite_bag(file);
   if (is_zstd(start)) return std::make_unique<UnpackedBag>(file);
@@ -180,6 +197,23 @@ fs::path part_of(const fs::path& folder, const std::string& name) {
                   "all files of the bag");
 }
 
+/// Says which bags a killed recorder left without naming them; a bag may also lie there unpacked.
+std::vector<std::string> doubts_about_unnamed(const fs::path& folder,
+                                              const std::set<fs::path>& named) {
+  const auto without_zstd = [](const fs::path& file) {
+    return file.extension() == ".zstd" ? file.stem() : file.filename();
+  };
+  std::set<fs::path> known;
+  for (const fs::path& file : named) known.insert(without_zstd(file));
+  std::vector<std::string> doubts;
+  for (const StemFile& found : list_by_stem(folder, {".mcap", ".db3", ".zstd"})) {
+    if (known.contains(without_zstd(found.file)) || !is_bag_file(found.file)) continue;
+    doubts.push_back(fmt::format("{} is not named in {} and is left out (ros2 bag reindex)",
+                                 found.file.filename().string(), kBagMetadataFile));
+  }
+  return doubts;
+}
+
 std::unique_ptr<const BagReader> open_bag_folder(const fs::path& folder) {
   const fs::path file = folder / kBagMetadataFile;
   const BagMetadata metadata = parse_bag_metadata(read_file(file), file);
@@ -195,7 +229,8 @@ std::unique_ptr<const BagReader> open_bag_folder(const fs::path& folder) {
     }
     parts.push_back(open_bag_file(part));
   }
-  return join_bags(folder, std::move(parts), {});
+  return std::make_unique<JoinedBag>(folder, std::move(parts), std::vector<std::string>{},
+                                     doubts_about_unnamed(folder, known));
 }
 
 }  // namespace

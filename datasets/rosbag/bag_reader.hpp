@@ -44,8 +44,9 @@ class BagReader {
   const std::filesystem::path& path() const { return path_; }
   /// All files that were opened; at least one.
   const std::vector<std::filesystem::path>& files() const { return files_; }
-  /// Plain sentences on what was found odd.
+  /// Plain sentences on how it is read, and on what of it may be missing.
   const std::vector<std::string>& remarks() const { return remarks_; }
+  const std::vector<std::string>& doubts() const { return doubts_; }
   const std::vector<BagConnection>& connections() const { return connections_; }
   std::vector<BagConnection> connections_of_type(std::string_view type) const;
   /// Returns the connection with this id, or nullptr.
@@ -66,7 +67,7 @@ class BagReader {
 
   std::filesystem::path path_;
   std::vector<std::filesystem::path> files_;
-  std::vector<std::string> remarks_;
+  std::vector<std::string> remarks_, doubts_;
   std::vector<BagMessage> messages_;  ///< of all topics
 
   /// Adds a connection; returns false where one of its id is there, which the others find.

@@ -54,12 +54,12 @@ BagSequence::BagSequence(std::string name, std::unique_ptr<const BagReader> bag,
     : bag_(std::move(bag)),
       undistorts_(asked.undistorts()),
       keeps_times_(asked.is_by_odometry() || asked.deskew == Deskew::kVelocity || asked.is_rig()),
-      has_stamped_points_(keeps_times_ || !asked.has_own_poses()),
       by_azimuth_(asked.point_times == PointTimes::kAzimuth) {
   Recording& recording = mutable_recording();
   recording.name = SequenceName(std::move(name), bag_->path().parent_path());
   recording.files = bag_->files();
   recording.remarks = bag_->remarks();
+  recording.doubts = bag_->doubts();
   recording.mark = mark_inside(*bag_);
   const std::string topic = cloud_topic(*bag_, asked.topic);
   list_scans(topic);
@@ -72,14 +72,12 @@ BagSequence::BagSequence(std::string name, std::unique_ptr<const BagReader> bag,
   if (turns) recording.doubts.push_back(fmt::format("topic {}: {}", topic, *turns));
   asked.has_own_poses() ? open_transforms(asked) : open_pose_file(asked);
   state_undistortion();
-  const PoseAt pose_at = transforms_
-                             ? PoseAt([this](auto ns) { return transforms_->at(ns); })
-                             : stamped_poses(bag_->path().parent_path(), "poses.txt", asked);
-  if (const auto clocks = doubt_about_clock(*this, pose_at)) add_clock_doubt(recording, *clocks);
+  if (const auto clocks = doubt_about_clock(*this, pose_at_)) add_clock_doubt(recording, *clocks);
 }
 
 PoseAt BagSequence::pose_at(std::size_t scan_index) const {
-  if (transforms_) return [this](std::int64_t stamp_ns) { return transforms_->at(stamp_ns); };
+  // Where stamps go back, a time tells no pose.
+  if (pose_at_ && tracks_.breaks() == 0) return pose_at_;
   return
       [&track = tracks_.around(scan_index)](std::int64_t stamp_ns) { return track.at(stamp_ns); };
 }
@@ -91,9 +89,7 @@ TimedCloud BagSequence::stored_cloud(const Scan& scan, bool timed) const {
 BagSequence::MovingCloud BagSequence::cloud_of(const Scan& scan) const {
   MovingCloud cloud{stored_cloud(scan, clock_.knows_unit()), {}};
   cloud.times_ns = clock_.after_stamp_ns({std::move(cloud.times), cloud.stamp_ns});
-  const auto good = std::ranges::find_if(cloud.times_ns, [](auto time) { return time != kNoTime; });
-  if (good == cloud.times_ns.end()) return cloud;
-  settle_times(cloud.times_ns, has_stamped_points_ ? 0 : *good);
+  settle_times(cloud.times_ns, 0);
   return cloud;
 }
 
@@ -161,6 +157,8 @@ void BagSequence::open_pose_file(const Reading& asked) {
     stamped.emplace_back(scans_[k].stamp_ns, map_from_sensor(k));
   }
   tracks_ = ScanTracks(stamped);
+  pose_at_ = stamped_poses(bag_->path().parent_path(), "poses.txt", asked);
+  doubt_about_raw_scans();
   if (tracks_.breaks() == 0) return;
   mutable_recording().doubts.push_back(fmt::format(
       "the stamps of {} of {} are not later than the one before: scans before these are "
@@ -186,7 +184,8 @@ void BagSequence::open_transforms(const Reading& asked) {
   std::ranges::move(transforms.remarks, std::back_inserter(recording.remarks));
   std::ranges::move(transforms.doubts, std::back_inserter(recording.doubts));
   transforms_ = std::move(transforms.map_from_sensor);
-  const std::int64_t last_ns = usual_last_ns();
+  pose_at_ = [this](std::int64_t stamp_ns) { return transforms_->at(stamp_ns); };
+  const std::int64_t last_ns = usual_times_ns().second;
   std::vector<MessageTimes> times;
   for (const Scan& scan : scans_) {
     times.push_back({scan.stamp_ns, scan.message.recorded_ns, last_ns});
@@ -198,16 +197,40 @@ void BagSequence::open_transforms(const Reading& asked) {
   for (ScanEntry& scan : recording.scans) scan.map_from_sensor = *transforms_->at(*scan.stamp_ns);
 }
 
-std::int64_t BagSequence::usual_last_ns() const {
+std::pair<std::int64_t, std::int64_t> BagSequence::usual_times_ns() const {
   constexpr std::size_t kLooked = 9;
-  std::vector<double> lasts_ns;
+  std::vector<double> firsts_ns, lasts_ns;
   for (std::size_t i = 0; i < kLooked; ++i) {
     const MovingCloud cloud = cloud_of(scans_[i * scans_.size() / kLooked]);
-    if (!cloud.times_ns.empty())
-      lasts_ns.push_back(static_cast<double>(std::ranges::max(cloud.times_ns)));
+    if (cloud.times_ns.empty()) continue;
+    const auto [first, last] = std::ranges::minmax(cloud.times_ns);
+    firsts_ns.push_back(static_cast<double>(first));
+    lasts_ns.push_back(static_cast<double>(last));
   }
-  if (lasts_ns.empty()) return 0;
-  return std::llround(quantile(std::move(lasts_ns), 0.5, QuantileRule::kUpper));
+  if (lasts_ns.empty()) return {0, 0};
+  const auto usual = [](std::vector<double> times) {
+    return std::llround(quantile(std::move(times), 0.5, QuantileRule::kUpper));
+  };
+  return {usual(std::move(firsts_ns)), usual(std::move(lasts_ns))};
+}
+
+void BagSequence::doubt_about_raw_scans() {
+  if (!undistorts_ || keeps_times_) return;
+  const auto [first_ns, last_ns] = usual_times_ns();
+  for (std::size_t k = 0; k < scans_.size(); ++k) {
+    raw_scans_ += !has_poses(k, scans_[k].stamp_ns + first_ns, scans_[k].stamp_ns + last_ns);
+  }
+  // One is at the end of every way of poses.
+  if (raw_scans_ <= 1 + tracks_.breaks()) return;
+  mutable_recording().doubts.push_back(
+      fmt::format("{} of {} are not undistorted: the poses do not cover the times of their points",
+                  raw_scans_, counted(scans_.size(), "scan")));
+}
+
+bool BagSequence::has_poses(std::size_t scan_index, std::int64_t from_ns,
+                            std::int64_t to_ns) const {
+  const PoseAt poses = pose_at(scan_index);
+  return poses(from_ns) && poses(to_ns);
 }
 
 bool BagSequence::covered(const Scan& scan) const {
@@ -252,31 +275,26 @@ void BagSequence::state_undistortion() {
                               : !timed               ? BagUndistortion::kNoTimes
                               : !undistorts_         ? BagUndistortion::kAsTold
                               : !clock_.knows_unit() ? BagUndistortion::kNoUnit
-                              : !transforms_         ? BagUndistortion::kButLast
+                              : raw_scans_ > 0       ? BagUndistortion::kButLast
                                                      : BagUndistortion::kAll;
   mutable_recording().reading.undistortion = how;
   mutable_recording().remarks.push_back(fmt::format("undistortion: {}", to_string(how)));
 }
 
 void BagSequence::read(std::size_t scan_index, Frame& frame) const {
-  const Scan& scan = scans_.at(scan_index);
-  MovingCloud cloud = cloud_of(scan);
-  // After the last pose of a file nothing is known.
-  const bool last = !transforms_ && tracks_.is_last(scan_index);
-  const bool moves = undistorts_ && !keeps_times_ && !cloud.times_ns.empty() && !last;
-  const std::int64_t at_ns =
-      moves && transforms_ ? cloud.stamp_ns + cloud.times_ns.front() : cloud.stamp_ns;
-  const PoseAt poses = pose_at(scan_index);
-  const auto pose = poses(at_ns);
-  if (!pose || (moves && !undistort(cloud.points, cloud.times_ns, cloud.stamp_ns, at_ns, poses))) {
-    throw DataError(bag_->path(), scan.number, "no pose covers the scan",
-                    "poses while it was taken");
-  }
+  MovingCloud cloud = cloud_of(scans_.at(scan_index));
+  const std::int64_t stamp_ns = cloud.stamp_ns;
   describe(scan_index, frame);
   frame.points = std::move(cloud.points);
-  frame.map_from_sensor = *pose;
-  if (undistorts_ && keeps_times_) frame.point_times_ns = std::move(cloud.times_ns);
   frame.truth = std::move(cloud.labels);
+  if (!undistorts_ || cloud.times_ns.empty()) return;
+  if (keeps_times_) {
+    frame.point_times_ns = std::move(cloud.times_ns);
+    return;
+  }
+  const auto [first_ns, last_ns] = std::ranges::minmax(cloud.times_ns);
+  if (!has_poses(scan_index, stamp_ns + first_ns, stamp_ns + last_ns)) return;
+  undistort(frame.points, cloud.times_ns, stamp_ns, stamp_ns, pose_at(scan_index));
 }
 
 std::vector<std::uint32_t> BagSequence::read_truth(std::size_t scan_index) const {

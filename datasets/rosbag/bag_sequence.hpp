@@ -21,8 +21,9 @@ std::optional<std::filesystem::path> bag_of(const std::filesystem::path& folder)
 
 /// The scans of one topic of a bag (`open_bag`). Poses are those of its tf tree (/tf, /tf_static),
 /// else of `bag_transforms`, unless a file was asked for. Scans whose points have times are
-/// undistorted; their frames then have the pose at the first point's time. Scans that no transform
-/// covers are left out and counted in the remarks. Truth is the field "label" of the points.
+/// undistorted to their stamps. Scans that no transform covers are left out and counted in the
+/// doubts; those whose points the poses of a file do not cover stay as they were measured. Truth is
+/// the field "label" of the points.
 class BagSequence : public Sequence {
  public:
   /// `bag` is a file or the folder of a ROS 2 bag. Throws DataError if it is no bag, has no such
@@ -49,8 +50,11 @@ class BagSequence : public Sequence {
   void expect_one_frame(const std::string& topic) const;
   void open_transforms(const Reading& asked);
   void open_pose_file(const Reading& asked);
-  /// When the last point of a scan is usually measured after the stamp; 0 where it is not known.
-  std::int64_t usual_last_ns() const;
+  /// When the first and last points of a scan are usually measured after the stamp; 0 where it is
+  /// not known.
+  std::pair<std::int64_t, std::int64_t> usual_times_ns() const;
+  void doubt_about_raw_scans();
+  bool has_poses(std::size_t scan_index, std::int64_t from_ns, std::int64_t to_ns) const;
   bool covered(const Scan& scan) const;
   void leave_out_uncovered(const std::string& clocks);
   void state_undistortion();
@@ -70,12 +74,12 @@ class BagSequence : public Sequence {
   PointClock clock_;
   std::optional<TransformChain> transforms_;  ///< of the bag
   ScanTracks tracks_;                         ///< of a pose file
+  PoseAt pose_at_;                            ///< of the bag, or of a file with stamps
+  std::size_t raw_scans_ = 0;                 ///< that poses of a file do not cover
   bool undistorts_ = true;
   /// Points are moved later, by poses that are found later or by the velocity; their times are
   /// kept.
   bool keeps_times_ = false;
-  /// Points are moved to where the sensor is at the stamp, not at the first point.
-  bool has_stamped_points_ = false;
   /// The points' own times do not count.
   bool by_azimuth_ = false;
 };

@@ -73,23 +73,48 @@ class PoseSearch {
 
   BagTransforms run() {
     std::optional<Way> found = asked_.pose_topic ? of_topic(*asked_.pose_topic) : of_first_kind();
-    if (found) {
-      std::vector<std::string> doubts;
-      if (!found->doubt.empty()) doubts.push_back(std::move(found->doubt));
-      return {std::move(found->chain), std::move(found->source), ignored(), std::move(doubts)};
-    }
+    std::vector<std::string> remarks = ignored();
+    if (found && found->chain.moves()) return result(std::move(*found), std::move(remarks), "");
     const Transforms odometry = transforms_of({kOdometry});
+    const std::string offer = offered(odometry);
+    if (found) return result(std::move(*found), std::move(remarks), offer);
     throw MissingPoses(
         bag_.path(),
-        "no transforms lead from " + map_frame_.value_or("a map") + " to " + sensor_frame_ +
+        (sensor_frame_.empty()
+             ? "the scans name no frame"
+             : "no transforms lead from " + map_frame_.value_or("a map") + " to " + sensor_frame_) +
             " (/tf: " + frames_of(tf_) + "; TransformStamped: " + frames_of(stamped_) +
             "; Odometry: " + frames_of(odometry) + ")" + in_brackets(ignored()),
-        fmt::format("such a chain ({} names a map that is called otherwise), {}, or poses found by "
-                    "odometry",
-                    option("map_frame"), option("poses", "FILE")));
+        fmt::format("such a chain ({} names a map that is called otherwise), {}{}, or poses found "
+                    "by odometry",
+                    option("map_frame"), offer.empty() ? "" : offer + " if it is of the sensor, ",
+                    option("poses", "FILE")));
   }
 
  private:
+  BagTransforms result(Way way, std::vector<std::string> remarks, const std::string& offer) const {
+    std::vector<std::string> doubts = way.chain.doubts();
+    if (!way.doubt.empty()) doubts.push_back(std::move(way.doubt));
+    if (!offer.empty()) {
+      doubts.push_back(fmt::format(
+          "the poses do not change, those of Odometry do: if these are of {}, ask for {}",
+          sensor_frame_, offer));
+    }
+    return {std::move(way.chain), std::move(way.source), std::move(remarks), std::move(doubts)};
+  }
+
+  /// Returns how to ask for the one topic of Odometry as the sensor's; empty where none moves.
+  std::string offered(const Transforms& odometry) const {
+    const auto moves = [&](const StampedTransform& pose) {
+      return pose.parent_from_child.matrix() !=
+             odometry.changing.front().parent_from_child.matrix();
+    };
+    const bool is_odometry = odometry.topics.size() == 1 && !asked_.pose_topic;
+    if (!is_odometry || sensor_frame_.empty() || std::ranges::none_of(odometry.changing, moves))
+      return "";
+    return option("pose_topic", *odometry.topics.begin() + "@" + sensor_frame_);
+  }
+
   /// Says which transforms were ignored.
   std::vector<std::string> ignored() const {
     std::set<std::string> frames;

@@ -101,7 +101,7 @@ class McapFile : public BagReader {
       at += count;
     }
     forget_last_index();
-    remarks_.push_back(
+    doubts_.push_back(
         fmt::format("{} was not closed by its recorder: the last {} of {} bytes are "
                     "no whole record and left out",
                     path_.filename().string(), file_bytes - at, file_bytes));

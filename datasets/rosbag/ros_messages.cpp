@@ -241,8 +241,7 @@ TimedCloud parse_cloud(std::string_view message, const std::filesystem::path& fi
   if (find_field(head, "label") != nullptr) cloud.labels.emplace();
   if (head.points() == 0) return cloud;
   cloud.points = points_of(head, message, file);
-  const CloudField* times = timed ? find_time_field(head) : nullptr;
-  if (times != nullptr) cloud.times = numbers_of(head, *times, message, file);
+  if (timed) cloud.times = times_of(head, message, file);
   cloud.labels = read_labels(head, message, file);
   return cloud;
 }

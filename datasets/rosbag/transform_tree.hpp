@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "datasets/rosbag/ros_messages.hpp"
@@ -24,6 +26,8 @@ class TransformChain {
   /// Returns the first transform that does not cover the time, and when it is known: "odom from
   /// base_link is known from 3.000 to 9.000 s"; empty where all do.
   std::string lacks(std::int64_t stamp_ns) const;
+  /// Returns what is odd about its transforms: that two publishers contradict each other.
+  const std::vector<std::string>& doubts() const { return doubts_; }
 
  private:
   friend class TransformTree;
@@ -32,6 +36,7 @@ class TransformChain {
     PoseTrack track;
   };
   std::vector<Link> links_;
+  std::vector<std::string> doubts_;
   std::int64_t most_gap_ns_ = 0;
 };
 
@@ -46,14 +51,20 @@ class TransformTree {
   /// several parents; empty when `to` is no ancestor.
   std::vector<std::string> way(const std::string& from, const std::string& to) const;
   /// Returns the frames from `from` up to "map", else to the root. Throws DataError where one has
-  /// two parents.
+  /// two parents, unless only one leads to a transform that changes.
   std::vector<std::string> ancestors(const std::string& from) const;
 
   /// Returns the transforms along a way, with holes longer than a time.
   TransformChain chain(const std::vector<std::string>& way, double max_gap_s) const;
 
  private:
+  /// Whether the transform to a parent changes, or one above it.
+  bool moves_above(const std::string& child, const std::string& parent,
+                   std::set<std::string> seen) const;
+
+  using Edge = std::pair<std::string, std::string>;  ///< child, parent
   std::map<std::string, std::map<std::string, PoseTrack>> parents_of_;
+  std::map<Edge, std::string> doubts_of_;
   const std::filesystem::path& file_;
 };
 

@@ -93,7 +93,8 @@ bool undistort(std::span<Point> points, std::span<const std::int64_t> times_ns,
   std::unordered_map<std::int64_t, Pose> reference_from_time;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::int64_t at_ns = stamp_ns + times_ns[i];
-    if (at_ns == reference_ns) continue;
+    // Moved, a missing return would be one near the sensor.
+    if (at_ns == reference_ns || !is_return(points[i])) continue;
     auto known = reference_from_time.find(at_ns);
     if (known == reference_from_time.end()) {
       const std::optional<Pose> pose = map_from_sensor(at_ns);
@@ -152,10 +153,6 @@ void ScanDeskewer::apply(std::size_t scan_index, Frame& frame) const {
   if (!is_moved) {
     frame.points = as_measured;
     return;
-  }
-  // Moved, a missing return would be one near the sensor.
-  for (std::size_t i = 0; i < as_measured.size(); ++i) {
-    if (!is_return(as_measured[i])) frame.points[i] = as_measured[i];
   }
   frame.point_times_ns.clear();
 }

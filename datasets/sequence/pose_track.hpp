@@ -56,10 +56,6 @@ class ScanTracks {
   explicit ScanTracks(const std::vector<std::pair<std::int64_t, Pose>>& scans);
 
   const PoseTrack& around(std::size_t scan_index) const { return tracks_[track_of_[scan_index]]; }
-  /// Returns whether no pose follows that of a scan on its way.
-  bool is_last(std::size_t scan_index) const {
-    return scan_index + 1 == track_of_.size() || track_of_[scan_index] != track_of_[scan_index + 1];
-  }
   /// Number of scans whose stamps are not later than the one before.
   std::size_t breaks() const { return tracks_.empty() ? 0 : tracks_.size() - 1; }
 

@@ -91,12 +91,13 @@ std::string to_string(const Perturbation& perturbation) {
 }
 
 std::string_view to_string(BagUndistortion undistortion) {
-  constexpr std::array<std::string_view, 6> kTexts = {"not by the points' times",
-                                                      "none, the points have no times",
-                                                      "none, as told",
-                                                      "by the points' times, the last scan not",
-                                                      "by the points' times",
-                                                      "none, the points' times are not used"};
+  constexpr std::array<std::string_view, 6> kTexts = {
+      "not by the points' times",
+      "none, the points have no times",
+      "none, as told",
+      "by the points' times, but for scans at the ends of the poses",
+      "by the points' times",
+      "none, the points' times are not used"};
   return kTexts[static_cast<std::size_t>(undistortion)];
 }
 

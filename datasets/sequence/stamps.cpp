@@ -60,6 +60,32 @@ std::optional<std::int64_t> stamp_of_parts_ns(std::string_view stem) {
   return parse_seconds_as_ns(fmt::format("{}.{}", *seconds, decimals));
 }
 
+/// Throws DataError for nanoseconds without the zeros before them, which are no decimals: none
+/// begins with a zero, and they end with some, or are many.
+void expect_decimals(const Recording& recording) {
+  constexpr std::size_t kNanoseconds = 9, kMany = 30;
+  bool ends_with_zero = recording.scans.size() >= kMany, begins_with_zero = false;
+  const ScanEntry* shorter = nullptr;
+  for (const ScanEntry& scan : recording.scans) {
+    const std::string_view stem = scan.stem;
+    const std::string_view decimals = stem.substr(stem.find_first_of("._") + 1);
+    if (decimals.size() > kNanoseconds) return;
+    begins_with_zero |= decimals.size() > 1 && decimals.starts_with('0');
+    if (decimals.size() == kNanoseconds) {
+      ends_with_zero |= decimals.ends_with('0');
+    } else {
+      shorter = &scan;
+    }
+  }
+  const bool has_nanoseconds = std::ranges::any_of(recording.scans, [](const ScanEntry& scan) {
+    return scan.stem.size() - scan.stem.find_first_of("._") == kNanoseconds + 1;
+  });
+  if (shorter == nullptr || !has_nanoseconds || begins_with_zero || !ends_with_zero) return;
+  throw DataError(shorter->file.value_or(shorter->stem),
+                  "seems to be called by seconds and nanoseconds without the zeros before these",
+                  "nine digits in every name, as 1700000000.020000000");
+}
+
 /// Returns whether all scans are called so.
 bool stamp_by_parts(Recording& recording) {
   std::vector<std::int64_t> stamps_ns;
@@ -68,6 +94,7 @@ bool stamp_by_parts(Recording& recording) {
     if (!stamp_ns) return false;
     stamps_ns.push_back(*stamp_ns);
   }
+  expect_decimals(recording);
   for (std::size_t k = 0; k < stamps_ns.size(); ++k) recording.scans[k].stamp_ns = stamps_ns[k];
   return true;
 }

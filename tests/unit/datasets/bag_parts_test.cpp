@@ -74,6 +74,34 @@ TEST_P(BagParts, AreNoneWhereTheirTimesAreApart) {
   }
 }
 
+TEST_P(BagParts, ThatARecorderDidNotCloseAreSaid) {
+  std::filesystem::create_directories(folder_ / "killed");
+  for (const int number : {0, 1, 2}) {
+    Drive drive;
+    for (int k = 4 * number; k < 4 * number + 4; ++k) {
+      add_cloud(drive, at(k));
+      add_tf(drive, {at(k), "map", "lidar", pose_at_x(k)});
+    }
+    const auto file = write(drive, "d_" + std::to_string(number));
+    const std::string name = file.filename().string() + (number == 2 ? ".active" : "");
+    std::filesystem::rename(file, folder_ / "killed" / name);
+  }
+  const auto doubts = [&] {
+    const Dataset dataset = open_dataset(folder_ / "killed", {});
+    EXPECT_EQ(dataset.sequences.size(), 1U);
+    EXPECT_EQ(dataset.sequences[0]->size(), 8U);
+    return dataset.sequences[0]->recording().doubts;
+  };
+  const auto active = testing::ContainsRegex("d_2.*active was not closed by its recorder");
+  EXPECT_THAT(doubts(), Contains(active));
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "killed")) {
+    if (entry.path().extension() != ".active") continue;
+    std::filesystem::rename(entry.path(), folder_ / "killed/other_2.bag.active");
+    break;
+  }
+  EXPECT_THAT(doubts(), Not(Contains(HasSubstr("not closed")))) << "of another drive";
+}
+
 TEST_P(BagParts, ThatAreNotThereAreNamedWithTheTimeThatIsMissing) {
   std::filesystem::create_directories(folder_ / "split");
   for (const int number : {8, 9, 11, 12}) {

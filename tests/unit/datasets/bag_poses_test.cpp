@@ -207,6 +207,69 @@ TEST_P(BagPoses, AskWhichOfTwoParentsIsMeant) {
   EXPECT_EQ(xs_of(open(drive, {.map_frame = "odom"})).back(), 11.0);
 }
 
+TEST_P(BagPoses, OfTwoPublishersAreDoubted) {
+  const auto drive_apart = [](double apart_m, double noise_m) {
+    return drive_of([=](Drive& to, std::int64_t stamp_ns, double k) {
+      const double off_m = static_cast<int>(k) % 3 == 0 ? noise_m : 0.0;
+      add_tf(to, {stamp_ns, "map", "lidar", pose_at_x(k + off_m)});
+      add_tf(to, {stamp_ns + kStep_ns / 2, "map", "lidar", pose_at_x(k + 0.5 + apart_m)});
+    });
+  };
+  EXPECT_THAT(open(drive_apart(0.8, 0.0)).recording().doubts,
+              Contains(HasSubstr("map from lidar is told in two ways that are 0.80 m apart")));
+  for (const double noise_m : {0.0, 0.3}) {
+    EXPECT_THAT(open(drive_apart(0.0, noise_m)).recording().doubts, testing::IsEmpty());
+  }
+}
+
+TEST_P(BagPoses, OfTwoMountsAreThoseOfTheLast) {
+  Drive drive;
+  add_tf(drive, {at(0), "base", "lidar", pose_at_x(0.0)}, "/tf_static");
+  for (int k = 0; k < 12; ++k) {
+    add_cloud(drive, at(k));
+    add_tf(drive, {at(k), "map", "base", pose_at_x(k)});
+  }
+  add_tf(drive, {at(12), "base", "lidar", pose_at_x(2.0)}, "/tf_static");
+  const BagSequence sequence = open(drive);
+  EXPECT_EQ(xs_of(sequence).back(), 13.0);
+  EXPECT_THAT(
+      sequence.recording().doubts,
+      Contains(HasSubstr("base from lidar is told in two ways that are 2.00 m apart: the last")));
+}
+
+TEST_P(BagPoses, OfTheParentThatMovesAreTaken) {
+  const Drive drive = drive_of([](Drive& to, std::int64_t stamp_ns, double k) {
+    add_tf(to, {stamp_ns, "a_camera", "lidar", pose_at_x(5.0)});
+    add_tf(to, {stamp_ns, "base", "lidar", pose_at_x(1.0)});
+    add_tf(to, {stamp_ns, "odom", "base", pose_at_x(k)});
+  });
+  EXPECT_EQ(xs_of(open(drive)).back(), 12.0);
+}
+
+TEST_P(BagPoses, NeedScansThatNameAFrame) {
+  Drive drive;
+  for (int k = 0; k < 12; ++k) {
+    add_cloud(drive, at(k), "");
+    add_tf(drive, {at(k), "map", "lidar", pose_at_x(k)});
+  }
+  EXPECT_THAT(error_of(drive), AllOf(HasSubstr("the scans name no frame"), HasSubstr("/tf: lidar, "
+                                                                                     "map")));
+}
+
+TEST_P(BagPoses, OfOdometryOfAnotherFrameAreOffered) {
+  const Drive drive = drive_of([](Drive& to, std::int64_t stamp_ns, double k) {
+    add_pose(to, kOdometry, stamp_ns, k, "body");
+    add_tf(to, {stamp_ns, "base", "lidar", pose_at_x(1.0)});
+  });
+  const char* offer = "pose_topic /pose@lidar";
+  EXPECT_THAT(open(drive).recording().doubts, Contains(HasSubstr(offer)));
+  EXPECT_THAT(open(drive, {.pose_topic = "/pose@lidar"}).recording().doubts, testing::IsEmpty());
+  const Drive without = drive_of([](Drive& to, std::int64_t stamp_ns, double k) {
+    add_pose(to, kOdometry, stamp_ns, k, "body");
+  });
+  EXPECT_THAT(error_of(without), HasSubstr(offer));
+}
+
 TEST_P(BagPoses, NameTheTransformThatDoesNotCoverTheScans) {
   const Drive drive = drive_of([](Drive& to, std::int64_t stamp_ns, double k) {
     if (k == 0) add_tf(to, {stamp_ns - 1, "map", "odom", Pose::Identity()});
@@ -254,8 +317,6 @@ TEST(ScanTracks, GiveEveryScanItsOwnPose) {
     const ScanTracks tracks(scans);
     for (std::size_t k = 0; k < scans.size(); ++k) {
       EXPECT_EQ(tracks.around(k).at(scans[k].first)->translation().x(), static_cast<double>(k));
-      const bool is_last = k + 1 == scans.size() || scans[k + 1].first <= scans[k].first;
-      EXPECT_EQ(tracks.is_last(k), is_last);
     }
   }
 }

@@ -79,27 +79,67 @@ TEST_F(Bag, GivesScansInOrderWithTheirPosesAndStamps) {
   }
 }
 
-TEST_F(Bag, MovesEveryPointToWhereTheFirstWasMeasuredAndKeepsCountAndOrder) {
+TEST_F(Bag, MovesEveryPointToWhereTheSensorIsAtTheStampAndKeepsCountAndOrder) {
   const BagSequence recording("s", write(good_bag({20'000'000, 20'000'000, 70'000'000}).str()), {});
   const Frame frame = recording.read(1);
-  EXPECT_DOUBLE_EQ(frame.map_from_sensor.translation().x(), 1.2);
+  EXPECT_DOUBLE_EQ(frame.map_from_sensor.translation().x(), 1.0);
+  EXPECT_EQ(frame.map_from_sensor.matrix(), recording.map_from_sensor(1).matrix());
   ASSERT_EQ(frame.points.size(), 3U);
-  EXPECT_EQ(frame.points[0].x, 1.0F);
-  EXPECT_EQ(frame.points[1].x, 0.0F);
-  EXPECT_FLOAT_EQ(frame.points[2].x, 5.5F);  // half a metre further on
+  EXPECT_FLOAT_EQ(frame.points[0].x, 1.2F);
+  EXPECT_EQ(frame.points[1].x, 0.0F) << "a missing return stays one";
+  EXPECT_FLOAT_EQ(frame.points[2].x, 5.7F);
   EXPECT_EQ(frame.points[2].y, 6.0F);
   EXPECT_EQ(frame.stamp_ns, kStart + kPeriod);
 }
 
-TEST_F(Bag, MovesMissingReturnsToo) {
-  const BagSequence recording("s", write(good_bag({0, 50'000'000, 0}).str()), {});
-  EXPECT_FLOAT_EQ(recording.read(0).points[1].x, 0.5F);
+TEST_F(Bag, KeepsRawScansWhenTold) {
+  const BagSequence recording("s", write(good_bag({0, 0, 50'000'000}).str()),
+                              {.deskew = Deskew::kNone});
+  EXPECT_EQ(recording.read(0).points[2].x, 5.0F);
 }
 
-TEST_F(Bag, KeepsRawScansWhenTold) {
-  const BagSequence recording("s", write(good_bag({0, 50'000'000, 0}).str()),
-                              {.deskew = Deskew::kNone});
-  EXPECT_EQ(recording.read(0).points[1].x, 0.0F);
+/// A bag whose points were measured before the stamps: the type of their times is int32.
+std::string bag_stamped_at_the_end() {
+  const auto before = [](int ms) { return static_cast<std::uint32_t>(-1'000'000 * ms); };
+  BagBytes bag = good_bag({before(90), before(40), before(30)});
+  const std::string field("t\x10\0\0\0\6", 6);
+  for (auto& chunk : bag.chunks) {
+    if (chunk.size() < 2) continue;
+    std::string& cloud = chunk[1].message;
+    cloud[cloud.find(field) + field.size() - 1] = 5;
+  }
+  return bag.str();
+}
+
+TEST_F(Bag, StampedAtTheEndOfItsSweepsHasPosesOfTheStamps) {
+  const BagSequence recording("s", write(bag_stamped_at_the_end()), {});
+  ASSERT_EQ(recording.size(), 2U) << "of the first scan only the end is known";
+  const Frame frame = recording.read(0);
+  EXPECT_EQ(frame.map_from_sensor.translation().x(), 1.0);
+  EXPECT_EQ(recording.map_from_sensor(0).translation().x(), 1.0);
+  EXPECT_FLOAT_EQ(frame.points[0].x, 0.1F);
+  EXPECT_FLOAT_EQ(frame.points[2].x, 4.7F);
+}
+
+TEST_F(Bag, LeavesScansRawThatThePosesOfAFileDoNotCover) {
+  const auto rows = folder_.write("rows.csv", "0,0,0,0,0,0,1\n-1,0,0,0,0,0,1\n-2,0,0,0,0,0,1\n");
+  const BagSequence paired("s", write(bag_stamped_at_the_end()), {.poses = PoseFile{rows}});
+  ASSERT_EQ(paired.size(), 3U);
+  EXPECT_FLOAT_EQ(paired.read(0).points[2].x, 5.0F) << "nothing is known before";
+  EXPECT_FLOAT_EQ(paired.read(2).points[2].x, 4.7F);
+  EXPECT_THAT(paired.remarks(), Contains(HasSubstr("but for scans at the ends of the poses")));
+  EXPECT_THAT(paired.recording().doubts, testing::IsEmpty());
+  // Between stamps all rows count, also those beyond the scans.
+  std::string tum;
+  for (int i = -2; i < 8; ++i) {
+    tum += fmt::format("{:.2f} {} 0 0 0 0 0 1\n", 1.5e9 + 0.05 * i, i == 3 ? 5.0 : 0.5 * i);
+  }
+  const BagSequence stamped("s", write(bag_stamped_at_the_end()),
+                            {.poses = PoseFile{folder_.write("tum.txt", tum)}});
+  EXPECT_FLOAT_EQ(stamped.read(0).points[2].x, 4.7F);
+  EXPECT_FLOAT_EQ(stamped.read(1).points[2].x, 4.7F);
+  // 30 ms before its stamp the sensor was at 3.8 m rather than 2 m, by the row of 0.15 s.
+  EXPECT_FLOAT_EQ(stamped.read(2).points[2].x, 6.8F);
 }
 
 TEST_F(Bag, SaysThatScansAndPosesAreStampedByTwoClocks) {
@@ -208,7 +248,7 @@ TEST_F(Bag, NamesWhatItLacks) {
 TEST_F(Bag, RefusesWhatIsDamaged) {
   const std::string good = good_bag().str();
   ASSERT_EQ(error_of(good), "nothing thrown");
-  EXPECT_THAT(error_of(std::string()), HasSubstr("does not start like a ROS bag"));
+  EXPECT_THAT(error_of(std::string()), HasSubstr("s.bag: is empty, expected a bag"));
   EXPECT_THAT(error_of("#ROSBAG V1.2\n"), HasSubstr("does not start like a ROS bag"));
   EXPECT_THAT(error_of(good.substr(0, good.size() - 1)), HasSubstr("is cut off"));
   EXPECT_THAT(error_of(good.substr(0, good.size() / 2)), HasSubstr("is cut off"));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <random>
@@ -53,6 +54,34 @@ void expect_four(std::string_view bytes) {
       EXPECT_EQ(other_bin_columns(part, 4), std::nullopt) << points << " points from " << at;
     }
   }
+}
+
+TEST(BinColumns, AreOfLittleEndianFloat32OrRefused) {
+  for (const std::size_t columns : {3U, 4U, 5U, 7U}) {
+    std::string bytes = with_columns(simulated_points("street", "vlp-16"), columns);
+    EXPECT_EQ(other_bin_numbers(bytes), "");
+    std::string wide;
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof(float)) {
+      float number = 0;
+      std::memcpy(&number, bytes.data() + at, sizeof(number));
+      const double same = number;
+      wide.append(reinterpret_cast<const char*>(&same), sizeof(same));
+      std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                   bytes.begin() + static_cast<std::ptrdiff_t>(at + sizeof(float)));
+    }
+    EXPECT_EQ(other_bin_numbers(bytes), "big-endian float32");
+    EXPECT_EQ(other_bin_numbers(wide), "float64");
+    // Whole numbers among them, as labels, are no sign of either.
+    for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i % 4 == 0 ? i : 0);
+    EXPECT_EQ(other_bin_numbers(bytes), "");
+  }
+  const TempFolder folder;
+  const auto points = simulated_points("street", "vlp-16");
+  std::string bytes = with_columns(points, 4);
+  for (auto at = bytes.begin(); at != bytes.end(); at += 4) std::reverse(at, at + 4);
+  folder.write("d/0.bin", bytes);
+  EXPECT_THAT(message_of<DataError>([&] { open_dataset(folder / "d", {}); }),
+              HasSubstr("0.bin: holds big-endian float32, expected little-endian float32"));
 }
 
 TEST(BinColumns, AreFoundWhereTheyAreNotFour) {

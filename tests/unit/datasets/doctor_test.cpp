@@ -404,7 +404,7 @@ const std::vector<Fault>& faults() {
                     reversed(point.intensity)};
          });
        },
-       "expected little-endian floats"},
+       "expected little-endian float32", Severity::kError},
       {"radians_for_degrees", kSensors,
        [](const fs::path& root) {
          change_poses(

@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "datasets/formats/byte_cursor.hpp"
 #include "datasets/formats/ply_file.hpp"
 #include "datasets/formats/point_records.hpp"
 #include "datasets/text/errors.hpp"
@@ -171,6 +173,44 @@ TEST(PointTimes, OfNoSweepAreNotUsed) {
     EXPECT_FALSE(PointClock(same, 0.1).knows_unit());
     EXPECT_FALSE(PointClock(same, 0.1).is_odd()) << "they say nothing";
   }
+  auto rounded = scans_of({.per_s = 0.0}, 1.7e9);
+  for (StoredTimes& scan : rounded) std::ranges::fill(scan.times, 1.7e9);
+  EXPECT_TRUE(PointClock(rounded, 0.1).is_odd());
+}
+
+TEST(PointTimes, ThatAreAllZeroInOneScanAreSaid) {
+  auto scans = scans_of({.per_s = 1e9}, 1.7e9);
+  EXPECT_EQ(PointClock(scans, 0.1).doubt(), "");
+  std::ranges::fill(scans[7].times, 0.0);
+  EXPECT_THAT(PointClock(scans, 0.1).doubt(), HasSubstr("times of 1 whole scan, of 12 scans"));
+}
+
+/// Two points with fields of float64.
+std::vector<double> times_in_fields(
+    const std::vector<std::pair<const char*, std::array<double, 2>>>& fields) {
+  CloudHead head;
+  ByteSink records;
+  for (const auto& [name, numbers] : fields) {
+    head.fields.push_back({name, static_cast<std::uint32_t>(8 * head.fields.size()), 8, 1});
+  }
+  for (const std::size_t point : {0U, 1U}) {
+    for (const auto& [name, numbers] : fields) records.put(numbers[point]);
+  }
+  head.point_step_bytes = static_cast<std::uint32_t>(8 * fields.size());
+  head.height = 1;
+  head.width = 2;
+  head.row_step_bytes = 2 * head.point_step_bytes;
+  return times_of(head, std::move(records).bytes(), "f");
+}
+
+TEST(PointTimes, AreThoseOfTheFieldThatDiffersOrTheSumOfSecondsAndNanoseconds) {
+  EXPECT_THAT(times_in_fields({{"time", {0, 0}}, {"timestamp", {5, 6}}}), ElementsAre(5, 6));
+  EXPECT_THAT(times_in_fields({{"time", {1, 2}}, {"timestamp", {5, 6}}}), ElementsAre(1, 2));
+  EXPECT_THAT(times_in_fields({{"time", {3, 3}}, {"timestamp", {0, 0}}}), ElementsAre(3, 3));
+  EXPECT_THAT(times_in_fields({{"timeSecond", {7, 8}}, {"timeNanosecond", {9e8, 0}}}),
+              ElementsAre(7.9e9, 8e9));
+  EXPECT_THAT(times_in_fields({{"timestamp_nsec", {64, 128}}}), ElementsAre(64, 128));
+  EXPECT_THAT(times_in_fields({{"ring", {1, 2}}}), testing::IsEmpty());
 }
 
 TEST(PointTimes, StandInTheFieldWithAUsualNameWhereThereAreSeveral) {

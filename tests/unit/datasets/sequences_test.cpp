@@ -4,13 +4,17 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <limits>
 #include <set>
+#include <span>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/formats/bin_file.hpp"
 #include "datasets/formats/label_file.hpp"
+#include "datasets/formats/point_range.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/formats/times_file.hpp"
+#include "datasets/layouts/dataset.hpp"
 #include "datasets/layouts/kitti_sequence.hpp"
 #include "datasets/layouts/layout.hpp"
 #include "datasets/sequence/fingerprint.hpp"
@@ -458,6 +462,32 @@ TEST(FileStamp, ChangesOnlyWhenAFileDoes) {
   EXPECT_EQ(stamp(), copied);
   folder.write("times.txt", "0\n1\n");
   EXPECT_NE(stamp(), copied);
+}
+
+TEST(PointsBeyondSight, AreMissingReturnsAndCounted) {
+  const TempFolder folder;
+  const std::vector<Point> sound = {{1, 2, 3, 4}, {0, -9e3F, 0, 1}};
+  std::vector<Point> odd = sound;
+  for (const float far_m : {1e30F, -std::numeric_limits<float>::max(), 2e4F}) {
+    odd.push_back({far_m, far_m, far_m, 5});
+  }
+  for (int k = 0; k < 3; ++k) {
+    write_bin(folder / "odd" / (std::to_string(k) + ".bin"), odd);
+    write_bin(folder / "sound" / (std::to_string(k) + ".bin"), sound);
+  }
+  const auto open = [&](const char* name) {
+    return open_dataset(folder / name, {.reading = {.poses = ByOdometry{}}});
+  };
+  const Dataset dataset = open("odd");
+  const std::vector<Point> read = dataset.sequences[0]->read(1).points;
+  ASSERT_EQ(read.size(), odd.size());
+  EXPECT_EQ(format_bin(std::span(read).first(2)), format_bin(sound));
+  for (std::size_t i = 2; i < read.size(); ++i) EXPECT_FALSE(is_return(read[i]));
+  EXPECT_THAT(
+      dataset.sequences[0]->recording().doubts,
+      testing::Contains(testing::HasSubstr("9 of 15 points looked at are more than 10 km")));
+  EXPECT_THAT(open("sound").sequences[0]->recording().doubts,
+              testing::Not(testing::Contains(testing::HasSubstr("10 km"))));
 }
 
 }  // namespace

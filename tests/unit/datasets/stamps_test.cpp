@@ -8,11 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/text/errors.hpp"
 #include "tests/temp_folder.hpp"
 
 namespace mosbench {
 namespace {
 
+using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr std::size_t kScans = 8;
@@ -91,6 +93,25 @@ TEST(Stamps, InNamesOfSecondsAndTheirDecimalsAreBoth) {
   for (const std::string stem : {"000012_000000001", "1700000000_000001", "1700000000.x", "0.1"}) {
     EXPECT_FALSE(stamped(std::vector<std::string>{stem}).scans[0].stamp_ns) << stem;
   }
+}
+
+TEST(Stamps, OfNanosecondsWithoutTheirZerosAreRefused) {
+  std::vector<std::string> padded, unpadded, shortened;
+  for (std::size_t k = 0; k < kScans; ++k) {
+    const std::string ns = std::to_string(20'000'000 + k * 100'000'000);
+    unpadded.push_back("1700000000." + ns);
+    padded.push_back("1700000000." + std::string(9 - ns.size(), '0') + ns);
+    shortened.push_back(padded.back().substr(0, 13));
+  }
+  EXPECT_THAT(message_of<DataError>([&] { stamped(unpadded); }),
+              testing::AllOf(HasSubstr("1700000000.20000000: seems to be called by seconds and"),
+                             HasSubstr("expected nine digits in every name")));
+  expect_stamps(stamped(padded), 1'700'000'000'020'000'000, 100'000'000);
+  expect_stamps(stamped(shortened), 1'700'000'000'020'000'000, 100'000'000);
+  // A fraction without the zeros at its end.
+  EXPECT_EQ(
+      stamped(std::vector<std::string>{"1700000000.5", "1700000000.599999999"}).scans[1].stamp_ns,
+      1'700'000'000'599'999'999);
 }
 
 TEST(Stamps, OfTimesTxtAreSecondsUnlessTheirStepsSayOtherwise) {
