@@ -68,22 +68,13 @@ std::vector<Check> table() {
           "{small_scans} far smaller than those around them: {small_names}; expected scans of like "
           "size"),
 
-      row(kPoints, "empty scans", {{"empty_scans", '>', 0}},
-          "{empty_scans} of {scans_hold} no points, first {first_empty}; expected some in every "
-          "scan (--read drop_scans=auto leaves them out)"),
       row(kPoints, "byte order", {{"plausible_reversed", '>', 0.5}},
           "{plausible_reversed_percent:.0f} % of the points are in range when their bytes are "
           "reversed, {plausible_percent:.0f} % as they are; expected little-endian floats",
           kDecides),
-      row(kPoints, "numbers", {{"nonfinite_points", '>', 0}},
-          "{nonfinite_points} of {points} points are NaN or infinite; expected numbers"),
       // A smaller share comes from a wrong export, whatever the scene.
       row(kPoints, "returns", {{"returns", '<', 0.05}},
           "{returned} of {points} points are returns; expected most"),
-      // A sensor loses few single returns (up to 0.05), while whole regions have none.
-      row(kPoints, "zeros", {{"lost_between", '>', 0.1}},
-          "{lost_between_percent:.0f} % of the points between two returns are (0, 0, 0); expected "
-          "returns"),
       row(kPoints, "upside down", {{"flat_above", '>', kMostFlatAbove}},
           "{flat_above_percent:.0f} % of the flat surfaces within 10 m are above the sensor; "
           "expected the ground below it (are the points upside down, z with the wrong sign?)"),
@@ -102,6 +93,20 @@ std::vector<Check> table() {
           "measures; expected metres (are these millimetres or feet?)"),
       row(kPoints, "larger unit", {{"nearest", '>', 0.99}},
           "nearly all points are nearer than 0.5 m; expected metres"),
+      // Scans of sensors that look ahead, and of turns, see the same directions.
+      row(kPoints, "parts of turns", {{"common_directions", '<', 0.3}},
+          "scans in a row have {common_directions_percent:.0f} % of the directions in common that "
+          "they see (median); expected most: is each turn stored in parts?"),
+
+      row(kReturns, "empty scans", {{"empty_scans", '>', 0}},
+          "{empty_scans} of {scans_hold} no points, first {first_empty}; expected some in every "
+          "scan (--read drop_scans=auto leaves them out)"),
+      row(kReturns, "numbers", {{"nonfinite_points", '>', 0}, {"plausible_reversed", '<', 0.5}},
+          "{nonfinite_points} of {points} points are NaN or infinite; expected numbers"),
+      // A sensor loses few single returns (up to 0.05), while whole regions have none.
+      row(kReturns, "zeros", {{"lost_between", '>', 0.1}},
+          "{lost_between_percent:.0f} % of the points between two returns are (0, 0, 0); expected "
+          "returns"),
 
       row(kLabelIds, "classes", {{"network_classes", '>', 0}},
           "the labels are {ids}, as the classes of a network; expected the ids of the data set "

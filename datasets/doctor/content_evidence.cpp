@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <bit>
+#include <bitset>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <numbers>
 #include <numeric>
 #include <set>
 #include <unordered_map>
@@ -21,8 +23,6 @@ namespace mosbench {
 namespace fs = std::filesystem;
 namespace {
 
-/// Scans read per sequence, half of them labelled ones: a checkup takes seconds.
-constexpr std::size_t kScansRead = 24;
 /// Single scans are upside down in which a larger share of flat places is above the sensor, of at
 /// least this many, while as many scans have at most this share there.
 constexpr double kMostAboveUpright = 0.2;
@@ -48,16 +48,31 @@ std::string ends_of_file(const std::filesystem::path& file) {
   return std::to_string(size_bytes) + " " + ends;
 }
 
+/// The sectors around the sensor, of 5 degrees, in which there are points.
+using Directions = std::bitset<72>;
+
+Directions directions_of(const std::vector<Point>& points) {
+  Directions seen;
+  for (const Point& point : points) {
+    const double range = range_m(point);
+    if (!(range > kNearestReturnM) || !std::isfinite(range)) continue;
+    const double turns = 0.5 + std::atan2(point.y, point.x) / (2.0 * std::numbers::pi);
+    seen.set(std::min(static_cast<std::size_t>(turns * static_cast<double>(seen.size())),
+                      seen.size() - 1));
+  }
+  return seen;
+}
+
 bool same_points(const std::vector<Point>& a, const std::vector<Point>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(Point)) == 0;
 }
 
 /// Returns evenly spread scans, and as many of the labelled ones.
-std::set<std::size_t> sampled_scans(const Sequence& sequence) {
+std::set<std::size_t> sampled_scans(const Sequence& sequence, std::size_t most) {
   std::vector<std::size_t> all(sequence.size());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  const auto any = picked(all, kScansRead / 2);
-  const auto labelled = picked(scans_with_truth(sequence), kScansRead / 2);
+  const auto any = picked(all, most / 2);
+  const auto labelled = picked(scans_with_truth(sequence), most / 2);
   std::set<std::size_t> sampled(any.begin(), any.end());
   sampled.insert(labelled.begin(), labelled.end());
   return sampled;
@@ -65,15 +80,17 @@ std::set<std::size_t> sampled_scans(const Sequence& sequence) {
 
 class ContentCount {
  public:
-  ContentCount(const Sequence& sequence, const LayoutContent& expected, SequenceCheckup& checkup)
-      : sequence_(sequence), expected_(expected), checkup_(checkup) {}
+  ContentCount(const Sequence& sequence, const LayoutContent& expected, std::size_t most_scans,
+               SequenceCheckup& checkup)
+      : sequence_(sequence), expected_(expected), most_scans_(most_scans), checkup_(checkup) {}
 
   void run() {
     checkup_.points_of_range.assign(range_bins_m().size(), 0);
-    for (const std::size_t scan_index : sampled_scans(sequence_)) count_scan(scan_index);
+    for (const std::size_t scan_index : sampled_scans(sequence_, most_scans_))
+      count_scan(scan_index);
     if (has_only_unlabelled()) {
       // Those read have no label by chance where key frames alone are labelled.
-      for (const std::size_t scan_index : picked(scans_with_labels(sequence_), kScansRead / 2)) {
+      for (const std::size_t scan_index : picked(scans_with_labels(sequence_), most_scans_ / 2)) {
         count_scan(scan_index);
       }
     }
@@ -81,6 +98,7 @@ class ContentCount {
     tell_labels();
     tell_empty();
     tell_repeated();
+    tell_directions();
   }
 
  private:
@@ -254,7 +272,7 @@ class ContentCount {
       if (const auto file = sequence_.scan_file(i)) ends.emplace_back(ends_of_file(*file), i);
     }
     if (!ends.empty()) return ends;
-    for (const std::size_t i : sampled_scans(sequence_)) {
+    for (const std::size_t i : sampled_scans(sequence_, most_scans_)) {
       if (i % 2 == 0 || i + 1 == sequence_.size()) continue;
       ends.emplace_back(std::to_string(i), i);
       ends.emplace_back(std::to_string(i), i + 1);
@@ -262,8 +280,24 @@ class ContentCount {
     return ends;
   }
 
+  /// Compares the directions that scans in a row see.
+  void tell_directions() {
+    constexpr std::size_t kMostPairs = 4, kFewestPairs = 3;
+    std::vector<std::size_t> starts(sequence_.size() - 1);
+    std::iota(starts.begin(), starts.end(), std::size_t{0});
+    std::vector<double> common;
+    for (const std::size_t first : picked(starts, kMostPairs)) {
+      const Directions a = directions_of(sequence_.read(first).points);
+      const Directions b = directions_of(sequence_.read(first + 1).points);
+      if (a.any() && b.any())
+        common.push_back(share((a & b).count(), std::min(a.count(), b.count())));
+    }
+    if (common.size() >= kFewestPairs) checkup_.facts["common_directions"] = median(common);
+  }
+
   const Sequence& sequence_;
   const LayoutContent& expected_;
+  const std::size_t most_scans_;
   SequenceCheckup& checkup_;
   std::vector<std::size_t> turned_;  ///< scans that are upside down
   std::size_t upright_ = 0, flat_ = 0, flat_above_ = 0;
@@ -339,8 +373,8 @@ const std::vector<double>& range_bins_m() {
 }
 
 void examine_content(const Sequence& sequence, const LayoutContent& expected,
-                     SequenceCheckup& checkup) {
-  ContentCount(sequence, expected, checkup).run();
+                     std::size_t most_scans, SequenceCheckup& checkup) {
+  ContentCount(sequence, expected, most_scans, checkup).run();
 }
 
 void examine_folder(const fs::path& folder, Facts& facts) {

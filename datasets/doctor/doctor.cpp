@@ -20,6 +20,9 @@
 namespace mosbench {
 namespace {
 
+/// Scans whose points are counted, half of them labelled ones: a checkup takes seconds.
+constexpr std::size_t kScansRead = 24;
+
 /// Returns Tr of calib.txt, or nothing when it is the identity or there is no such file.
 std::optional<Pose> tr_of(const std::filesystem::path& folder) {
   const auto file = folder / "calib.txt";
@@ -202,8 +205,9 @@ class Examination {
   void check_points(const Sequence& sequence, const std::filesystem::path& folder,
                     const LayoutContent& expected, SequenceCheckup& part) {
     attempt(folder, [&] {
-      examine_content(sequence, expected, part);
+      examine_content(sequence, expected, kScansRead, part);
       judge(Subject::kPoints, part);
+      judge(Subject::kReturns, part);
       judge(Subject::kLabelIds, part);
     });
     examine_stamps(sequence, part.facts);

@@ -63,8 +63,15 @@ Checkup check_up(
     const std::filesystem::path& path, const OpenOptions& options,
     const std::function<void()>& at_each_scan = [] {});
 
-/// Returns the doubts of a recording, and what its stamps and poses show: no scan is read.
+/// Returns the doubts of a recording, and what its stamps and poses show: no scan is read unless
+/// all poses are equal.
 std::vector<std::string> doubts_of(const Sequence& sequence);
+
+/// Adds what some dozens of scans show to the doubts of a sequence, once: that they are in another
+/// unit or repeated, that labels are not the data set's, that poses do not fit. Returns what it
+/// added. Says nothing of data that were disturbed on purpose. Throws DataError.
+std::vector<std::string> add_doubts_of_scans(DatasetKind kind, Sequence& sequence,
+                                             bool has_given_poses = true);
 
 /// Finds scans that were measured over longer than the time to the next one, as they are read.
 class SweepWatch {
@@ -91,9 +98,9 @@ std::optional<std::string> doubt_about_pose_frame(const Sequence& sequence);
 void examine_folder(const std::filesystem::path& folder, Facts& facts);
 /// Looks at the order, unit and gaps of all stamps.
 void examine_stamps(const Sequence& sequence, Facts& facts);
-/// Reads some dozens of scans.
+/// Reads up to `most_scans`, and those that may repeat others.
 void examine_content(const Sequence& sequence, const LayoutContent& expected,
-                     SequenceCheckup& checkup);
+                     std::size_t most_scans, SequenceCheckup& checkup);
 /// Compares labels with what other scans see, in up to a dozen labelled scans.
 void examine_labels(const Sequence& sequence, SequenceCheckup& checkup);
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "datasets/doctor/doctor.hpp"
+#include "datasets/doctor/pose_fit.hpp"
 #include "datasets/sequence/pose_track.hpp"
+#include "datasets/sequence/still_sensor.hpp"
 #include "datasets/text/text.hpp"
 
 namespace mosbench {
@@ -17,6 +19,15 @@ std::int64_t step_ns(const Sequence& sequence, std::size_t scan_index) {
   if (scan_index + 1 >= sequence.size()) return 0;
   const auto stamp = sequence.stamp_ns(scan_index), next = sequence.stamp_ns(scan_index + 1);
   return stamp && next ? *next - *stamp : 0;
+}
+
+/// Scans that cannot be read show nothing.
+bool is_seen_standing(const Sequence& sequence) {
+  try {
+    return find_still_sensor(sequence).stands;
+  } catch (const DataError&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -35,13 +46,38 @@ std::vector<std::string> doubts_of(const Sequence& sequence) {
   const bool is_still = std::ranges::all_of(scans, is_first);
   const std::string& source = sequence.reading().poses.source;
   const bool has_poses = !source.empty() && source != kStaticPoses && source != kNoPoses;
-  if (is_still && has_poses) facts["equal_poses"] = scans.size();
+  if (is_still && has_poses && !is_seen_standing(sequence)) facts["equal_poses"] = scans.size();
   for (const Subject subject : {Subject::kStamps, Subject::kStill}) {
     for (Symptom& symptom : judged(checks(), subject, facts, sequence.name())) {
       doubts.push_back(std::move(symptom.what));
     }
   }
   return doubts;
+}
+
+std::vector<std::string> add_doubts_of_scans(DatasetKind kind, Sequence& sequence,
+                                             bool has_given_poses) {
+  constexpr std::size_t kScansRead = 8;
+  if (sequence.reading().perturb) return {};
+  std::vector<std::string> found;
+  const auto add = [&](std::string doubt) { found.push_back(std::move(doubt)); };
+  SequenceCheckup seen;
+  examine_content(sequence, layout_of(kind).files, kScansRead, seen);
+  for (const Subject subject : {Subject::kPoints, Subject::kLabelIds}) {
+    for (Symptom& symptom : judged(checks(), subject, seen.facts, sequence.name())) {
+      add(std::move(symptom.what));
+    }
+  }
+  if (found.empty() && has_given_poses) {
+    auto doubt = doubt_about_pose_frame(sequence);
+    if (!doubt) doubt = doubt_about_pose_fit(sequence);
+    if (doubt) add(std::move(*doubt));
+  }
+  const std::vector<std::string>& known = sequence.recording().doubts;
+  std::erase_if(found,
+                [&](const auto& doubt) { return std::ranges::find(known, doubt) != known.end(); });
+  for (const std::string& doubt : found) sequence.add_doubt(doubt);
+  return found;
 }
 
 void SweepWatch::add(std::size_t scan_index, const Frame& frame) {

@@ -61,7 +61,8 @@ struct Symptom {
 /// What is judged at a time.
 enum class Subject : std::uint8_t {
   kFolder,
-  kPoints,
+  kPoints,   ///< what makes results wrong
+  kReturns,  ///< what methods leave out
   kLabelIds,
   kStamps,
   kClock,  ///< of poses, by what opening a sequence shows
@@ -250,8 +251,10 @@ struct RowRange {
 /// Returns runs of two or more rows with the same numbers.
 std::vector<RowRange> equal_rows(const std::vector<Pose>& poses);
 
-/// Returns the rows after the steps that stand out most from the steps around them, longest first.
-std::vector<std::size_t> odd_steps(const std::vector<Pose>& poses, std::size_t most);
+/// Returns the rows after the steps that stand out most, and by more than `least_m`, from the steps
+/// around them, longest first.
+std::vector<std::size_t> odd_steps(const std::vector<Pose>& poses, std::size_t most,
+                                   double least_m = -1.0);
 
 /// How far poses are from a smooth way, by their positions alone.
 struct PoseScatter {

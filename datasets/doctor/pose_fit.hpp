@@ -23,8 +23,8 @@ enum class FitDetail : std::uint8_t {
 void examine_pose_fit(const Sequence& sequence, const std::vector<Pose>& given, FitDetail detail,
                       Facts& facts);
 
-/// Returns a sentence for given poses that do not fit, from few scans of a sequence that is long
-/// enough; nothing where its poses were disturbed on purpose. Throws DataError.
+/// Returns a sentence for given poses that do not fit, or jump where the scans do not, from few
+/// scans; nothing where the poses were disturbed on purpose. Throws DataError.
 std::optional<std::string> doubt_about_pose_fit(const Sequence& sequence);
 
 }  // namespace mosbench

@@ -297,7 +297,8 @@ std::vector<RowRange> equal_rows(const std::vector<Pose>& poses) {
   return runs;
 }
 
-std::vector<std::size_t> odd_steps(const std::vector<Pose>& poses, std::size_t most) {
+std::vector<std::size_t> odd_steps(const std::vector<Pose>& poses, std::size_t most,
+                                   double least_m) {
   constexpr std::size_t kAround = 4;
   std::vector<double> steps_m;
   for (std::size_t row = 1; row < poses.size(); ++row) {
@@ -314,7 +315,9 @@ std::vector<std::size_t> odd_steps(const std::vector<Pose>& poses, std::size_t m
   std::ranges::sort(odd, std::ranges::greater());
   odd.resize(std::min(odd.size(), most));
   std::vector<std::size_t> rows;
-  for (const auto& [unused, row] : odd) rows.push_back(row);
+  for (const auto& [odd_m, row] : odd) {
+    if (odd_m > least_m) rows.push_back(row);
+  }
   return rows;
 }
 

@@ -40,6 +40,15 @@ void check_rotation(const Eigen::Matrix3d& rotation, const std::filesystem::path
   }
 }
 
+/// Returns whether these are 0 0 0 1: a 4x4 matrix was written.
+bool is_last_row(std::span<const std::string_view, kColumns> words) {
+  for (int column = 0; column < kColumns; ++column) {
+    const auto number = parse_double(words[static_cast<std::size_t>(column)]);
+    if (number != (column + 1 == kColumns ? 1.0 : 0.0)) return false;
+  }
+  return true;
+}
+
 constexpr std::string_view kKey = "Tr:";
 
 constexpr std::array<const char*, 3> kRowNames = {"12 numbers (row-major 3x4 matrix)",
@@ -49,9 +58,54 @@ constexpr std::size_t kPoseNumbers = 7;
 
 const char* row_of(PoseFormat format) { return kRowNames[static_cast<std::size_t>(format)]; }
 
-PoseFormat format_of(std::string_view row) {
-  if (row.find(',') != std::string_view::npos) return PoseFormat::kRollout;
-  return split_at_blanks(row).size() == kPoseNumbers + 1 ? PoseFormat::kTum : PoseFormat::kKitti;
+/// Of a row with blanks between its numbers; `stored` is the row of the file.
+PoseFormat format_of(std::string_view row, std::string_view stored) {
+  const std::size_t numbers = split_at_blanks(row).size();
+  if (numbers == kPoseNumbers + 1) return PoseFormat::kTum;
+  const bool by_commas = stored.find(',') != stored.npos;
+  return by_commas && numbers <= kPoseNumbers ? PoseFormat::kRollout : PoseFormat::kKitti;
+}
+
+/// What separates the numbers of a row; a comma within words is a decimal comma.
+char separator_of(std::string_view row) {
+  if (row.find(';') != row.npos) return ';';
+  const auto words = split_at_blanks(row);
+  return words.size() >= kPoseNumbers && !words.front().ends_with(',') ? ' ' : ',';
+}
+
+/// Refuses names of columns in another order: numbers would be read for others without an error.
+void check_names(const TextLine& line, const std::filesystem::path& file) {
+  const std::string names = lower_case(std::string(line.text));
+  const std::size_t x = names.find("qx"), w = names.find("qw");
+  if (x == names.npos || w == names.npos || x < w) return;
+  throw DataError(file, line.number, "its columns have quaternions as w x y z", "x y z w");
+}
+
+/// Returns the text with blanks between numbers, and a row of names as a comment. Places stay.
+std::string with_blanks(std::string_view text, const std::filesystem::path& file) {
+  std::string plain(text);
+  for (const TextLine& line : split_lines(plain, file)) {
+    check_names(line, file);
+    if (line.text.starts_with('#')) continue;
+    std::ranges::replace(plain, separator_of(line.text), ' ');
+    const auto words = split_at_blanks(line.text);
+    const auto is_number = [](std::string_view word) { return parse_double(word).has_value(); };
+    if (words.size() < kPoseNumbers || std::ranges::any_of(words, is_number)) break;
+    plain[static_cast<std::size_t>(line.text.data() - plain.data())] = '#';
+    break;
+  }
+  return plain;
+}
+
+std::string no_number(std::string_view word) {
+  const bool has_comma = word.find(',') != word.npos;
+  return quoted(word) + " is no finite number" + (has_comma ? " (is that a decimal comma?)" : "");
+}
+
+/// Returns whether a row says that its pose is not known.
+bool is_unknown(const std::vector<std::string_view>& words) {
+  return std::ranges::any_of(
+      words, [](std::string_view word) { return lower_case(std::string(word)) == "nan"; });
 }
 
 /// Position and quaternion in x y z w order.
@@ -63,7 +117,7 @@ Pose parse_seven(const std::vector<std::string_view>& words, std::size_t from, P
   }
   const std::vector<double> numbers =
       parse_numbers(std::span(words).subspan(from), [&](std::string_view word) {
-        throw DataError(file, line.number, quoted(word) + " is no finite number", row_of(format));
+        throw DataError(file, line.number, no_number(word), row_of(format));
       });
   const auto pose = pose_of({numbers[0], numbers[1], numbers[2]},
                             {numbers[3], numbers[4], numbers[5], numbers[6]});
@@ -106,9 +160,13 @@ std::int64_t parse_stamp(const std::vector<std::string_view>& words, TimeUnit un
   return *stamp_ns;
 }
 
-/// Takes a row of kTum; of those with the same stamp the first.
+/// Takes a row of kTum with a pose; of those with the same stamp the first.
 void add_stamped(const std::vector<std::string_view>& words, TimeUnit unit, const TextLine& line,
                  PoseList& list, const std::filesystem::path& file) {
+  if (is_unknown(words)) {
+    ++list.unknown;
+    return;
+  }
   const Pose pose = parse_seven(words, 1, list.format, line, file);
   const std::int64_t stamp_ns = parse_stamp(words, unit, list, line, file);
   if (!list.stamps_ns.empty() && stamp_ns == list.stamps_ns.back()) {
@@ -122,6 +180,7 @@ void add_stamped(const std::vector<std::string_view>& words, TimeUnit unit, cons
 /// Checks the last pose, which stands in `line`.
 void check_near_first(const std::vector<Pose>& poses, const TextLine& line,
                       const std::filesystem::path& file) {
+  if (poses.empty()) return;
   const double far_m = distance_m(poses.front(), poses.back());
   if (far_m <= kFarthestPose_m) return;
   throw DataError(file, line.number, fmt::format("is {:g} m from the first pose", far_m),
@@ -135,14 +194,16 @@ bool is_rotation(const Eigen::Matrix3d& matrix) {
 }
 
 Pose parse_pose_row(std::string_view row, const std::filesystem::path& file, std::size_t line) {
-  const auto numbers = split_at_blanks(row);
+  auto numbers = split_at_blanks(row);
+  if (numbers.size() == kNumbers + kColumns && is_last_row(std::span(numbers).last<kColumns>())) {
+    numbers.resize(kNumbers);
+  }
   if (numbers.size() != kNumbers) {
     throw DataError(file, line, fmt::format("{} numbers in the row", numbers.size()),
                     "12 (row-major 3x4 matrix)");
   }
   const std::vector<double> values = parse_numbers(numbers, [&](std::string_view number) {
-    throw DataError(file, line, quoted(number) + " is no finite number",
-                    "12 numbers separated by blanks");
+    throw DataError(file, line, no_number(number), "12 numbers separated by blanks");
   });
   Pose pose = Pose::Identity();
   pose.matrix().topRows<kRows>() =
@@ -234,11 +295,16 @@ std::optional<PoseFormat> pose_format_from_string(std::string_view name) {
 }
 
 std::vector<std::string> PoseList::remarks(const std::filesystem::path& file) const {
-  if (repeated == 0) return {};
-  return {fmt::format("{}: {} the stamp of the row before and {} left out",
-                      file.filename().string(),
-                      repeated == 1 ? "1 row has" : fmt::format("{} rows have", repeated),
-                      repeated == 1 ? "is" : "are")};
+  std::vector<std::string> said;
+  const auto say = [&](std::size_t rows, std::string_view what) {
+    if (rows == 0) return;
+    said.push_back(fmt::format("{}: {} {} and {} left out", file.filename().string(),
+                               rows == 1 ? "1 row has" : fmt::format("{} rows have", rows), what,
+                               rows == 1 ? "is" : "are"));
+  };
+  say(repeated, "the stamp of the row before");
+  say(unknown, "numbers that are NaN");
+  return said;
 }
 
 PoseList parse_pose_list(std::string_view text, std::optional<PoseFormat> format,
@@ -247,17 +313,19 @@ PoseList parse_pose_list(std::string_view text, std::optional<PoseFormat> format
   bool first = true;
   std::size_t decimals = 0;
   TimeUnit unit = TimeUnit::kSeconds;
-  for (const TextLine& line : split_lines(text, file)) {
+  const std::string plain = with_blanks(text, file);
+  for (const TextLine& line : split_lines(plain, file)) {
     if (line.text.starts_with('#')) continue;
     if (first) {
-      list.format = format.value_or(format_of(line.text));
-      if (list.format == PoseFormat::kTum) unit = unit_of_rows(text, file);
+      const auto at = static_cast<std::size_t>(line.text.data() - plain.data());
+      list.format = format.value_or(format_of(line.text, text.substr(at, line.text.size())));
+      if (list.format == PoseFormat::kTum) unit = unit_of_rows(plain, file);
     }
     first = false;
     if (list.format == PoseFormat::kKitti) {
       list.poses.push_back(parse_pose_row(line.text, file, line.number));
     } else if (list.format == PoseFormat::kRollout) {
-      list.poses.push_back(parse_seven(split_at_commas(line.text), 0, list.format, line, file));
+      list.poses.push_back(parse_seven(split_at_blanks(line.text), 0, list.format, line, file));
     } else {
       const auto words = split_at_blanks(line.text);
       decimals = std::max(decimals, decimals_of(words.front()));

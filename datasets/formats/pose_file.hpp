@@ -50,7 +50,8 @@ std::vector<Pose> parse_poses(std::string_view text, const std::filesystem::path
 /// Formats with the shortest decimals that read back as the same doubles.
 std::string format_poses(std::span<const Pose> poses);
 
-/// Parses one row of 12 numbers; `line` (from 1) is for the error.
+/// Parses one row of 12 numbers, or of 16 with 0 0 0 1 at the end; `line` (from 1) is for the
+/// error.
 Pose parse_pose_row(std::string_view row, const std::filesystem::path& file, std::size_t line);
 std::string format_pose_row(const Pose& pose);
 
@@ -92,13 +93,15 @@ struct PoseList {
   std::vector<Pose> poses;
   std::vector<std::int64_t> stamps_ns;  ///< one per pose, increasing; of kTum only
   std::size_t repeated = 0;             ///< rows that were dropped: the row before has their stamp
+  std::size_t unknown = 0;              ///< rows of kTum that were dropped: they hold NaN
   std::int64_t rounding_ns = 1'000;  ///< what printing the stamps can have changed, at least 1 us
 
   /// Returns what is odd about the rows, or nothing.
   std::vector<std::string> remarks(const std::filesystem::path& file) const;
 };
 
-/// Recognises the format from the first row when it is not given. Throws DataError with the line.
+/// Recognises the format from the first row when it is not given. Blanks, commas or semicolons
+/// separate numbers, a first row may hold names. Throws DataError with the line.
 PoseList parse_pose_list(std::string_view text, std::optional<PoseFormat> format,
                          const std::filesystem::path& file);
 PoseList read_pose_list(const std::filesystem::path& file, std::optional<PoseFormat> format);

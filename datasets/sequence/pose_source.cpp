@@ -194,6 +194,18 @@ class SensorPoseReader {
     return to_string(ClockDoubt{what, result_.done.fitting_offset_s});
   }
 
+  /// What reads poses that have another clock, about: nobody knows when it began.
+  std::string other_clock(const std::vector<std::int64_t>& poses_ns,
+                          const std::vector<std::int64_t>& scans_ns) const {
+    const double first_s = seconds_of(poses_ns.front() - scans_ns.front());
+    const double last_s = seconds_of(poses_ns.back() - scans_ns.back());
+    const double apart_s = std::abs(last_s - first_s), late_s = 0.5 * (first_s + last_s);
+    if (apart_s > 0.5 * seconds_of(scans_ns.back() - scans_ns.front())) return "";
+    return fmt::format(
+        " (about {} if theirs is another)",
+        option("pose_offset_s", fmt::format("{}", mending_offset_s(asked_.pose_offset_s, late_s))));
+  }
+
   [[noreturn]] void refuse_few(const std::vector<std::int64_t>& poses_ns,
                                const std::vector<std::int64_t>& scans_ns, std::size_t posed,
                                const std::string& clocks) const {
@@ -206,7 +218,8 @@ class SensorPoseReader {
                     posed, counted(scans_ns.size(), "scan"), seconds_of(poses_ns.front()),
                     seconds_of(poses_ns.back()), seconds_of(scans_ns.front()),
                     seconds_of(scans_ns.back()), clocks.empty() ? "" : "; " + clocks),
-        unit.empty() ? "stamps by the clock of the scans, or a longer " + option("max_pose_gap_s")
+        unit.empty() ? "stamps by the clock of the scans" + other_clock(poses_ns, scans_ns) +
+                           ", or a longer " + option("max_pose_gap_s")
                      : "stamps in seconds: these fit as " + unit);
   }
 

@@ -86,6 +86,11 @@ std::string_view take_line(std::string_view& text) {
 }
 
 std::vector<TextLine> split_lines(std::string_view text, const std::filesystem::path& file) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) {
+    throw DataError(file, "is text in UTF-16", "UTF-8");
+  }
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::vector<TextLine> lines;
   std::optional<std::size_t> blank_line;
   std::size_t number = 0;

@@ -19,8 +19,8 @@ struct TextLine {
   std::string_view text;
 };
 
-/// Returns the lines up to the last that is not blank, as views into `text`. Throws DataError
-/// naming the line when one before it is blank.
+/// Returns the lines up to the last that is not blank, as views into `text`, without a byte order
+/// mark. Throws DataError naming the line when one before it is blank, and for UTF-16.
 std::vector<TextLine> split_lines(std::string_view text, const std::filesystem::path& file);
 
 /// Splits a line at blanks and tabs; no part is empty.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/thread_pool.hpp"
+#include "datasets/doctor/doctor.hpp"
 #include "datasets/layouts/convert.hpp"
 #include "datasets/text/errors.hpp"
 #include "datasets/text/text.hpp"
@@ -93,14 +94,14 @@ Answer convert_dataset(ConvertFlags options) {
   if (odometry) options.reading.poses = ByOdometry{};
   Dataset dataset = open_dataset(options);
   check_kept_speed(options, dataset.kind);
-  if (odometry) {
-    const OdometryChoice choice = with_filter(*odometry, dataset.kind);
-    expect_poses(dataset, choice);
-    conversion.before_sequence = [&dataset, choice, &options](std::size_t i) {
-      Sequence& sequence = *dataset.sequences[i];
-      set_poses(sequence, choice, find_poses(sequence, choice, options.threads));
-    };
-  }
+  std::optional<OdometryChoice> choice;
+  if (odometry) choice = with_filter(*odometry, dataset.kind);
+  if (choice) expect_poses(dataset, *choice);
+  conversion.before_sequence = [&dataset, &choice, &options](std::size_t i) {
+    Sequence& sequence = *dataset.sequences[i];
+    if (choice) set_poses(sequence, *choice, find_poses(sequence, *choice, options.threads));
+    add_doubts_of_scans(dataset.kind, sequence, !choice);
+  };
   if (options.check) return plan_answer(dataset, !odometry);
   std::optional<Progress> progress;
   std::size_t scans = 0;

@@ -6,6 +6,7 @@
 
 #include "core/base/thread_pool.hpp"
 #include "datasets/disk/claim.hpp"
+#include "datasets/doctor/doctor.hpp"
 #include "datasets/text/errors.hpp"
 #include "eval/answer/answer_text.hpp"
 #include "eval/cli/commands.hpp"
@@ -121,6 +122,7 @@ Answer score(const ScoreFlags& options) {
   Dataset dataset = open_dataset(options);
   ScoreTask task = options.task;
   task.options = prediction_options(options);
+  for (const auto& sequence : dataset.sequences) add_doubts_of_scans(dataset.kind, *sequence);
   if (options.protocol == "all") {
     if (task.split) keep_split(*task.split, dataset);
     return score_all(options, dataset, std::move(task));

@@ -10,7 +10,6 @@
 #include "datasets/disk/files.hpp"
 #include "datasets/disk/partial_file.hpp"
 #include "datasets/doctor/doctor.hpp"
-#include "datasets/doctor/pose_fit.hpp"
 #include "datasets/formats/pose_file.hpp"
 #include "datasets/sequence/pose_mark.hpp"
 #include "datasets/sequence/rig_fit.hpp"
@@ -111,23 +110,6 @@ Result completed(const RunPlan& plan, const PlannedSequence& planned, Result ran
   return result;
 }
 
-/// What the scans say about poses that were not found by them, and about mounts by those that were.
-std::vector<std::string> doubts_about_poses(const RunPlan& plan, const Sequence& sequence) {
-  std::vector<std::string> doubts;
-  const auto add = [&](std::optional<std::string> doubt) {
-    if (!doubt) return;
-    tell(fmt::format("{}: {}", sequence.name(), *doubt));
-    doubts.push_back(std::move(*doubt));
-  };
-  if (plan.odometry) {
-    for (std::string& doubt : doubts_about_mounts(sequence)) add(std::move(doubt));
-    return doubts;
-  }
-  add(doubt_about_pose_frame(sequence));
-  if (doubts.empty()) add(doubt_about_pose_fit(sequence));
-  return doubts;
-}
-
 /// Finds and sets the poses of a sequence.
 std::vector<ScanPose> take_poses(const RunPlan& plan, std::size_t position) {
   Sequence& sequence = *plan.dataset.sequences[position];
@@ -142,29 +124,34 @@ std::vector<ScanPose> take_poses(const RunPlan& plan, std::size_t position) {
 }  // namespace
 
 ComputedSequence compute_sequence(const RunPlan& plan, const PlannedSequence& planned) {
+  Sequence& sequence = *plan.dataset.sequences[planned.position];
+  for (const auto& doubt : add_doubts_of_scans(plan.dataset.kind, sequence, !plan.odometry)) {
+    tell(fmt::format("{}: {}", sequence.name(), doubt));
+  }
   const Clock::time_point start = Clock::now();
   const double start_cpu_ms = process_cpu_ms();
   take_cost_of_commands();  // of commands before this one
-  const Sequence& sequence = *plan.dataset.sequences[planned.position];
   const RunSettings& settings = plan.settings;
   ComputedSequence computed{planned.folder.begin(), settings.keeps_labels, {}};
   const fs::path& partial = computed.claim->path();
   std::vector<ScanPose> found;
   if (plan.odometry) {
     found = take_poses(plan, planned.position);
+    for (const std::string& doubt : doubts_about_mounts(sequence)) {
+      tell(fmt::format("{}: {}", sequence.name(), doubt));
+      sequence.add_doubt(doubt);
+    }
     if (settings.keeps_labels) {
       const std::string rows = format_poses(poses_of(found));
       mark_poses(partial / "poses.txt", rows, mark_of_poses(sequence));
       write_file_atomic(partial / "poses.txt", rows);
     }
   }
-  std::vector<std::string> doubts = doubts_about_poses(plan, sequence);
   give_back_memory();  // of odometry, and of runs before
   Result ran = run_sequence(sequence, settings,
                             settings.keeps_labels ? std::optional(partial) : std::nullopt);
   Result& result = computed.outcome.result;
   result = completed(plan, planned, std::move(ran), found);
-  std::ranges::move(doubts, std::back_inserter(result.doubts));
   computed.outcome.folder = planned.folder.path();
   if (result.timing) {
     const double cpu_s = 1e-3 * (process_cpu_ms() - start_cpu_ms);

@@ -5,6 +5,7 @@
 #include <thread>
 #include <vector>
 
+#include "datasets/formats/pose_file.hpp"
 #include "datasets/hdf5/hdf5_module.hpp"
 #include "datasets/layouts/dataset.hpp"
 #include "datasets/rosbag/bag_reader.hpp"
@@ -412,6 +413,25 @@ TEST_F(Convert, TellsThatRadialVelocitiesAreLost) {
   const cli::Answer kept = convert(source, "helipr", "aeva", {"--sequences", "room/Aeva"});
   ASSERT_EQ(kept.exit_code, 0) << kept.err;
   EXPECT_THAT(kept.err, Not(HasSubstr("radial velocities")));
+}
+
+TEST_F(Convert, SaysAsRunAndScoreThatPosesDoNotFitAndKeepsIt) {
+  const std::string data = simulate("semantickitti");
+  const std::string sound = folder_ / "sound", doubtful = folder_ / "doubtful";
+  EXPECT_THAT(convert(data, "semantickitti", "sound").out, Not(HasSubstr("poses jump")));
+  EXPECT_THAT(read_file(sound + "/sequences/08/pose_origin.txt"), Not(HasSubstr("poses jump")));
+  std::vector<Pose> poses = read_poses(data + "/sequences/08/poses.txt");
+  for (std::size_t k = 7; k < poses.size(); ++k) poses[k].pretranslate(Eigen::Vector3d(2, 0, 0));
+  write_poses(data + "/sequences/08/poses.txt", poses);
+  const std::string doubt = "the poses jump between scans 000006 and 000007: they move by ";
+  EXPECT_THAT(convert(data, "semantickitti", "doubtful").out, HasSubstr("08: " + doubt));
+  EXPECT_THAT(read_file(doubtful + "/sequences/08/pose_origin.txt"), HasSubstr(doubt));
+  const cli::Answer run = cli::run({"run", data, "--out", folder_ / "run"});
+  EXPECT_THAT(run.out, HasSubstr("08: " + doubt));
+  const cli::Answer score =
+      cli::run({"score", data, "--predictions", data + "/sequences/08/labels"});
+  EXPECT_EQ(score.exit_code, 0) << score.err;
+  EXPECT_THAT(score.out, HasSubstr(doubt));
 }
 
 }  // namespace

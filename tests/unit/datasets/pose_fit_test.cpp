@@ -130,12 +130,53 @@ TEST(PoseFit, DoubtsARunFromFewScans) {
   }
 }
 
-TEST(PoseFit, DoubtsNoShortRunAndNoDisturbedPoses) {
-  const auto few = [](std::vector<Pose>& poses) {
-    jitter(poses);
-    poses.resize(29);
+/// The first scans of the drive, with poses that were changed before.
+Change only(std::size_t scans, const Change& change) {
+  return [=](std::vector<Pose>& poses) {
+    change(poses);
+    poses.resize(scans);
   };
-  EXPECT_EQ(doubt_about_pose_fit(OtherPoses(few)), std::nullopt);
+}
+
+void invert(std::vector<Pose>& poses) {
+  for (Pose& pose : poses) pose = pose.inverse();
+}
+
+void scale_to_millimetres(std::vector<Pose>& poses) {
+  for (Pose& pose : poses) pose.translation() *= 1e3;
+}
+
+TEST(PoseFit, DoubtsShortRunsToo) {
+  for (const Change& change : {Change(jitter), Change(invert), Change(scale_to_millimetres)}) {
+    const auto doubt = doubt_about_pose_fit(OtherPoses(only(12, change)));
+    ASSERT_TRUE(doubt);
+    EXPECT_THAT(*doubt, HasSubstr("the poses do not fit the scans: over "));
+  }
+  EXPECT_THAT(*doubt_about_pose_fit(OtherPoses(scale_to_millimetres)),
+              HasSubstr("run with --odometry simple"));
+  EXPECT_THAT(*doubt_about_pose_fit(OtherPoses(drift(0.03))), HasSubstr("run with --refine-poses"));
+  for (const std::size_t scans : {5U, 12U}) {
+    EXPECT_EQ(doubt_about_pose_fit(OtherPoses(only(scans, keep))), std::nullopt);
+  }
+  EXPECT_EQ(doubt_about_pose_fit(OtherPoses(only(4, invert))), std::nullopt);
+}
+
+TEST(PoseFit, NamesASingleJumpAndASingleRow) {
+  const auto jump = [](std::vector<Pose>& poses) {
+    for (std::size_t k = 20; k < poses.size(); ++k) poses[k].pretranslate(Eigen::Vector3d(0, 2, 0));
+  };
+  const auto single = [](std::vector<Pose>& poses) {
+    poses[9].translate(Eigen::Vector3d(0, 3, 0));
+  };
+  const auto by_jump = doubt_about_pose_fit(OtherPoses(jump));
+  ASSERT_TRUE(by_jump);
+  EXPECT_THAT(*by_jump, HasSubstr("the poses jump between scans 000019 and 000020: they move by "));
+  const auto by_row = doubt_about_pose_fit(OtherPoses(only(14, single)));
+  ASSERT_TRUE(by_row);
+  EXPECT_THAT(*by_row, HasSubstr("the poses jump between scans 0000"));
+}
+
+TEST(PoseFit, DoubtsNoDisturbedPoses) {
   OpenOptions options;
   options.reading.perturb.emplace().steps = {{"pose_noise_m", 0.2}};
   EXPECT_EQ(doubt_about_pose_fit(OtherPoses(keep, options)), std::nullopt);

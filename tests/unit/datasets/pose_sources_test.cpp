@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <tuple>
 
@@ -53,6 +54,58 @@ TEST(PoseList, RefusesRowsThatAreNoPose) {
   EXPECT_THAT(error_of("1 1 2 3 0 0 0 1\n0 1 2 3 0 0 0 1\n"),
               HasSubstr("f:2: its stamp is before that of the row before"));
   EXPECT_THAT(error_of("t 1 2 3 0 0 0 1\n"), HasSubstr("no time in seconds"));
+}
+
+TEST(PoseList, ReadsRowsAsSpreadsheetsAndMatricesHaveThem) {
+  const auto read = [](const std::string& text) {
+    return parse_pose_list(text, std::nullopt, "f");
+  };
+  const std::string row = "0.5 1 2 3 0 0 0 1";
+  const auto separated = [&](char by) {
+    std::string other = row;
+    std::ranges::replace(other, ' ', by);
+    return other + "\n";
+  };
+  for (const std::string& text :
+       {row + "\n", separated(','), separated(';'), "\xEF\xBB\xBF" + row + "\n",
+        "stamp,tx,ty,tz,qx,qy,qz,qw\n" + separated(','), "# made by hand, once\n" + row + "\n"}) {
+    const PoseList list = read(text);
+    EXPECT_EQ(list.format, PoseFormat::kTum);
+    ASSERT_EQ(list.poses.size(), 1U) << text;
+    EXPECT_EQ(list.poses[0].translation(), Eigen::Vector3d(1, 2, 3));
+    EXPECT_EQ(list.stamps_ns[0], 500'000'000);
+  }
+  std::string commas = kQuarterTurn;
+  std::ranges::replace(commas, ' ', ',');
+  for (const std::string& text : {std::string(kQuarterTurn) + " 0 0 0 1\n", commas + "\n"}) {
+    EXPECT_EQ(read(text).poses.at(0).matrix(), read(kQuarterTurn).poses.at(0).matrix());
+    EXPECT_EQ(read(text).format, PoseFormat::kKitti);
+  }
+}
+
+TEST(PoseList, LeavesRowsWithoutPoseOutAndSaysSo) {
+  const PoseList list = parse_pose_list(
+      "1 nan nan nan 0 0 0 1\n2 1 2 3 0 0 0 1\n3 1 2 3 NaN 0 0 1\n", std::nullopt, "dir/f");
+  ASSERT_EQ(list.stamps_ns.size(), 1U);
+  EXPECT_EQ(list.stamps_ns[0], 2'000'000'000);
+  EXPECT_THAT(list.remarks("dir/f"),
+              testing::ElementsAre("f: 2 rows have numbers that are NaN and are left out"));
+}
+
+TEST(PoseList, RefusesWhatWouldBeReadForOtherNumbers) {
+  const auto error_of = [](const std::string& text) {
+    return message_of<DataError>([&] { parse_pose_list(text, std::nullopt, "f"); });
+  };
+  EXPECT_THAT(error_of("# stamp tx ty tz qw qx qy qz\n0.5 1 2 3 1 0 0 0\n"),
+              HasSubstr("f:1: its columns have quaternions as w x y z, expected x y z w"));
+  EXPECT_THAT(error_of("0,5 1,0 2,0 3,0 0,0 0,0 0,0 1,0\n"),
+              HasSubstr("is no finite number (is that a decimal comma?)"));
+  EXPECT_THAT(error_of(std::string(kQuarterTurn) + " 0 0 0 2\n"),
+              HasSubstr("16 numbers in the row"));
+  EXPECT_THAT(error_of(std::string("\xFF\xFE"
+                                   "1\0",
+                                   4)),
+              HasSubstr("is text in UTF-16, expected UTF-8"));
 }
 
 TEST(PoseList, TellsTheUnitOfStamps) {

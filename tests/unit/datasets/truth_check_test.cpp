@@ -102,7 +102,7 @@ class KeyFrames : public QuietSequence {
 
 /// Returns what is said of labels, and of scans as a whole where labels are named.
 std::vector<std::string> said_of_ids(const Sequence& sequence, SequenceCheckup& checkup) {
-  examine_content(sequence, layout_of(DatasetKind::kSemanticKitti).files, checkup);
+  examine_content(sequence, layout_of(DatasetKind::kSemanticKitti).files, 24, checkup);
   std::vector<std::string> said;
   for (const Subject subject : {Subject::kPoints, Subject::kLabelIds}) {
     for (const Symptom& symptom : judged(checks(), subject, checkup.facts, "frames")) {
