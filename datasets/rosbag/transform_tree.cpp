@@ -29,7 +29,7 @@ double apart_m(const Pose& a, const Pose& b) {
 }
 
 /// Returns how far apart the poses are that two publishers give one frame: fixed poses that differ,
-/// or poses that go to and fro with every step, which no smooth way and no noise does. Else 0.
+/// or poses that go back and forth with every step, which no smooth way and no noise does. Else 0.
 double publishers_apart_m(StampedPoses poses, bool always) {
   constexpr double kLeast_m = 0.1;
   if (always) {
