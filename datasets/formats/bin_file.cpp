@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 #include "datasets/disk/files.hpp"
 #include "datasets/text/errors.hpp"
@@ -112,18 +113,23 @@ bool fits_clearly_better(const Spread& other, const Spread& told) {
           is_clearly_below(0.5, other.of_neighbours, told.of_neighbours));
 }
 
-/// The share of numbers that no scan holds: neither 0 nor from 1e-9 to 1e7.
+/// The share of numbers that no scan holds: neither 0 nor from 1e-9 to 1e7. One number again and
+/// again is no scan either.
 template <typename Number>
 double odd_share(std::string_view bytes, bool is_big_endian) {
+  constexpr std::size_t kFewestNumbers = 16;
   std::size_t odd = 0;
+  std::set<std::array<char, sizeof(Number)>> seen;
   for (std::size_t draw = 0; draw < kPairs; ++draw) {
     std::array<char, sizeof(Number)> raw{};
     const std::size_t at = scatter_bits(draw) % (bytes.size() / raw.size());
     std::memcpy(raw.data(), bytes.data() + at * raw.size(), raw.size());
     if (is_big_endian) std::ranges::reverse(raw);
     const double size = std::abs(static_cast<double>(std::bit_cast<Number>(raw)));
+    seen.insert(raw);
     odd += size != 0.0 && !(size > 1e-9 && size < 1e7);
   }
+  if (seen.size() < kFewestNumbers) return 1.0;
   return static_cast<double>(odd) / static_cast<double>(kPairs);
 }
 

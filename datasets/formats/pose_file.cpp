@@ -89,8 +89,11 @@ std::string with_blanks(std::string_view text, const std::filesystem::path& file
     if (line.text.starts_with('#')) continue;
     std::ranges::replace(plain, separator_of(line.text), ' ');
     const auto words = split_at_blanks(line.text);
-    const auto is_number = [](std::string_view word) { return parse_double(word).has_value(); };
-    if (words.size() < kPoseNumbers || std::ranges::any_of(words, is_number)) break;
+    constexpr std::string_view kStartOfNumbers = "+-.0123456789";
+    const auto may_be_number = [&](std::string_view word) {
+      return kStartOfNumbers.find(word.front()) != kStartOfNumbers.npos;
+    };
+    if (words.size() < kPoseNumbers || std::ranges::any_of(words, may_be_number)) break;
     plain[static_cast<std::size_t>(line.text.data() - plain.data())] = '#';
     break;
   }

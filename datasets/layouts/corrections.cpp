@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "datasets/formats/point_range.hpp"
@@ -40,7 +41,7 @@ std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
 
 /// No LiDAR sees as far: drivers store such numbers for missing returns.
 bool is_beyond_sight(const Point& point) {
-  constexpr double kFarthest_m = 1e4;
+  constexpr double kFarthest_m = 1e6;
   return is_finite(point) && range_m(point) > kFarthest_m;
 }
 
@@ -57,7 +58,7 @@ class WithinSight : public SequenceAround {
     }
     if (beyond == 0) return;
     add_doubt(
-        fmt::format("{} of {} looked at are more than 10 km away: such points are taken for "
+        fmt::format("{} of {} looked at are more than 1000 km away: such points are taken for "
                     "missing returns",
                     beyond, counted(points, "point")));
   }
@@ -66,7 +67,9 @@ class WithinSight : public SequenceAround {
   void read(std::size_t scan_index, Frame& frame) const override {
     SequenceAround::read(scan_index, frame);
     for (Point& point : frame.points) {
-      if (is_beyond_sight(point)) point = {0, 0, 0, 0};
+      // Runs count those that are not finite, in whichever scan they are.
+      constexpr float kNowhere = std::numeric_limits<float>::quiet_NaN();
+      if (is_beyond_sight(point)) point = {kNowhere, kNowhere, kNowhere, 0};
     }
   }
 

@@ -148,11 +148,23 @@ TEST_F(SpoiledRun, CountsNanAndInfinitePointsAndLabelsThemStatic) {
   EXPECT_EQ(labels[1], kStaticLabel);
 }
 
+TEST_F(SpoiledRun, CountsPointsFartherThanAnySensorSees) {
+  const fs::path scan = folder_ / "room/velodyne/000004.bin";
+  std::vector<Point> points = read_bin(scan);
+  points[0].x = 3e38F;
+  points[1].y = -2e6F;
+  write_bin(scan, points);
+  const cli::Answer answer = run();
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_THAT(answer.out, HasSubstr("2 points are NaN or infinite"));
+  EXPECT_THAT(answer.out, HasSubstr("more than 1000 km away"));
+}
+
 TEST_F(SpoiledRun, NamesTheScanWhoseVoxelsWouldOverflow) {
   ASSERT_EQ(run().exit_code, 0);
   const auto before = cli::contents(folder_ / "out");
   write_bin(folder_ / "room/velodyne/000002.bin",
-            std::vector<Point>(cli::kPointsPerScan, Point{3e38F, 0.0F, 0.0F, 0.0F}));
+            std::vector<Point>(cli::kPointsPerScan, Point{9e5F, 0.0F, 0.0F, 0.0F}));
   const cli::Answer answer = cli::run(
       {"run", (folder_ / "room").string(), "--out", (folder_ / "out").string(), "--overwrite"});
   EXPECT_EQ(answer.exit_code, 3);

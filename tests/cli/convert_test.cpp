@@ -428,8 +428,7 @@ TEST_F(Convert, SaysAsRunAndScoreThatPosesDoNotFitAndKeepsIt) {
   EXPECT_THAT(read_file(doubtful + "/sequences/08/pose_origin.txt"), HasSubstr(doubt));
   const cli::Answer run = cli::run({"run", data, "--out", folder_ / "run"});
   EXPECT_THAT(run.out, HasSubstr("08: " + doubt));
-  const cli::Answer score =
-      cli::run({"score", data, "--predictions", data + "/sequences/08/labels"});
+  const cli::Answer score = cli::run({"score", data, "--predictions", folder_ / "run"});
   EXPECT_EQ(score.exit_code, 0) << score.err;
   EXPECT_THAT(score.out, HasSubstr(doubt));
 }

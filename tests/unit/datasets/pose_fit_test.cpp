@@ -153,8 +153,8 @@ TEST(PoseFit, DoubtsShortRunsToo) {
     EXPECT_THAT(*doubt, HasSubstr("the poses do not fit the scans: over "));
   }
   EXPECT_THAT(*doubt_about_pose_fit(OtherPoses(scale_to_millimetres)),
-              HasSubstr("run with --odometry simple"));
-  EXPECT_THAT(*doubt_about_pose_fit(OtherPoses(drift(0.03))), HasSubstr("run with --refine-poses"));
+              HasSubstr("run with odometry simple"));
+  EXPECT_THAT(*doubt_about_pose_fit(OtherPoses(drift(0.03))), HasSubstr("run with refine_poses"));
   for (const std::size_t scans : {5U, 12U}) {
     EXPECT_EQ(doubt_about_pose_fit(OtherPoses(only(scans, keep))), std::nullopt);
   }

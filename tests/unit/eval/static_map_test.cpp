@@ -51,11 +51,12 @@ TEST(StaticMap, LeavesOutByMajorityAndCountsGhosts) {
   StaticMap map({.voxel_m = 1.0, .by_majority = true}, folder / "tiles");
   const std::vector<Point> ghost = {{1.5F, 0.5F, 0.5F, 0}}, wall = {{3.5F, 0.5F, 0.5F, 0}},
                            left = {{5.5F, 0.5F, 0.5F, 0}};
-  map.add(scan_at({}, ghost, PointOutcome::kTruePositive));
-  map.add(scan_at({}, ghost, PointOutcome::kFalseNegative));
-  for (int k = 0; k < 2; ++k) map.add(scan_at({}, wall, PointOutcome::kTrueNegative));
-  map.add(scan_at({}, wall, PointOutcome::kFalsePositive));
-  map.add(scan_at({}, left, PointOutcome::kFalseNegative));
+  map.add(scan_at(Eigen::Vector3d::Zero(), ghost, PointOutcome::kTruePositive));
+  map.add(scan_at(Eigen::Vector3d::Zero(), ghost, PointOutcome::kFalseNegative));
+  for (int k = 0; k < 2; ++k)
+    map.add(scan_at(Eigen::Vector3d::Zero(), wall, PointOutcome::kTrueNegative));
+  map.add(scan_at(Eigen::Vector3d::Zero(), wall, PointOutcome::kFalsePositive));
+  map.add(scan_at(Eigen::Vector3d::Zero(), left, PointOutcome::kFalseNegative));
   EXPECT_EQ(map.size(), 2U) << "the wall, and what was missed alone";
   const MapCounts truth = map.voxels_with_truth();
   EXPECT_EQ(truth.static_points, 1U);
@@ -183,7 +184,7 @@ TEST(FloorPlan, HasItsCornerWhereTheYamlSaysAndNorthUp) {
 TEST(FloorPlan, RefusesMoreCellsThanFit) {
   const TempFolder folder;
   StaticMap map({.voxel_m = 0.1}, folder / "tiles");
-  map.add(scan_at({}, {{1, 1, 0, 0}}, PointOutcome::kTrueNegative));
+  map.add(scan_at(Eigen::Vector3d::Zero(), {{1, 1, 0, 0}}, PointOutcome::kTrueNegative));
   map.add(scan_at({1e5, 1e5, 0}, {{1, 1, 0, 0}}, PointOutcome::kTrueNegative));
   EXPECT_THROW(floor_plan(map, FreeCells(0.1, {}), {}, "plan.pgm"), DataError);
 }
