@@ -9,7 +9,7 @@ import folders
 import fixtures
 import program
 
-READERS = {"stats", "table", "rank", "compare", "doctor", "trajectory", "list", "help"}
+READERS = {"stats", "table", "rank", "compare", "doctor", "info", "trajectory", "list", "help"}
 WRITERS = {
     "run": "run data --set @config.json --threads 1 --write scores --out out",
     "run on two threads": "run data --set @config.json --threads 2 --out out",
