@@ -31,7 +31,7 @@ WRITERS = {
     "reproduce": "run table:I --data doals --threads 1 --out out",
     "profile": "profile data --json p.json -o t.json",
     "truth": "truth propose data --threads 1 -o out",
-    "map": "map data --set @config.json --threads 1 --out out -o old.ply,old.yaml",
+    "map": "map data --method hmm-mos --set @config.json --threads 1 --out out -o made.ply,made.yaml",
     "convert": "convert data --layout semantickitti --out out",
     "convert to doals": "convert data --layout doals --out out",
     "convert to ROS 2": "convert data --layout ros2-mcap --out out",
