@@ -4,6 +4,7 @@ protocols and formats. With --check writes nothing and fails where a page is not
 
 import json
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -17,7 +18,8 @@ def cell(value):
         value = "yes" if value else "no"
     if isinstance(value, float):
         value = f"{value:.10g}"
-    return str("" if value is None else value).replace("|", "\\|").replace("<", "\\<")
+    text = str("" if value is None else value).replace("|", "\\|").replace("<", "\\<")
+    return re.sub(r"\S*@\S+", r"`\g<0>`", text)  # a command of doxygen outside code
 
 
 def table(heads, rows):
