@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -39,9 +40,12 @@ std::unique_ptr<Sequence> with_point_times(std::unique_ptr<Sequence> sequence,
   return later || !by ? std::move(sequence) : deskewed(std::move(sequence), *by);
 }
 
-/// No LiDAR sees as far: drivers store such numbers for missing returns.
+/// No LiDAR sees as far: drivers store such numbers for missing returns. Every point of every scan
+/// is asked, and most are so near that the way along the axes tells.
 bool is_beyond_sight(const Point& point) {
   constexpr double kFarthest_m = 1e6;
+  constexpr float kNear_m = 9e5F;
+  if (!(std::abs(point.x) + std::abs(point.y) + std::abs(point.z) > kNear_m)) return false;
   return is_finite(point) && range_m(point) > kFarthest_m;
 }
 

@@ -93,17 +93,16 @@ double free_until_m(const Eigen::Vector3d& ray_m, double sensor_m, const HeightR
 
 }  // namespace
 
-void FreeCells::add(std::int64_t x, std::int64_t y) {
+FreeCells::Place FreeCells::place_of(std::int64_t x, std::int64_t y) {
   const auto in = [](std::int64_t i) { return ((i % kSide) + kSide) % kSide; };
-  squares_[{(x - in(x)) / kSide, (y - in(y)) / kSide}].set(
-      static_cast<std::size_t>(in(x)*kSide + in(y)));
+  return {{(x - in(x)) / kSide, (y - in(y)) / kSide},
+          static_cast<std::size_t>(in(x)*kSide + in(y))};
 }
 
 bool FreeCells::has(std::int64_t x, std::int64_t y) const {
-  const auto in = [](std::int64_t i) { return ((i % kSide) + kSide) % kSide; };
-  const auto square = squares_.find({(x - in(x)) / kSide, (y - in(y)) / kSide});
-  return square != squares_.end() &&
-         square->second.test(static_cast<std::size_t>(in(x)*kSide + in(y)));
+  const Place place = place_of(x, y);
+  const auto square = squares_.find(place.square);
+  return square != squares_.end() && square->second.test(place.in_square);
 }
 
 void FreeCells::add(const JudgedScan& scan, const RangeGate& range) {
@@ -128,7 +127,8 @@ void FreeCells::add(const JudgedScan& scan, const RangeGate& range) {
     for (double at_m = 0.0; at_m + cell_m_ <= free_m[i]; at_m += 0.7 * cell_m_) {
       const auto [x, y] = floor_cell_of(from_m.x() + at_m * std::cos(towards_rad),
                                         from_m.y() + at_m * std::sin(towards_rad), cell_m_);
-      add(x, y);
+      const Place place = place_of(x, y);
+      squares_[place.square].set(place.in_square);
     }
   }
 }

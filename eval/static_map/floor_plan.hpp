@@ -1,6 +1,7 @@
 #pragma once
 
 #include <bitset>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -41,11 +42,17 @@ class FreeCells {
 
  private:
   static constexpr std::int64_t kSide = 64;
-  void add(std::int64_t x, std::int64_t y);
+  using Square = std::pair<std::int64_t, std::int64_t>;
+  /// Where a cell is kept.
+  struct Place {
+    Square square;
+    std::size_t in_square;
+  };
+  static Place place_of(std::int64_t x, std::int64_t y);
 
   double cell_m_;
   HeightRange heights_;
-  std::map<std::pair<std::int64_t, std::int64_t>, std::bitset<kSide * kSide>> squares_;
+  std::map<Square, std::bitset<kSide * kSide>> squares_;
 };
 
 /// Draws the points of a map: a cell with a point at these heights above the ground around is
