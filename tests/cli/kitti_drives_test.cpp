@@ -116,6 +116,22 @@ TEST_P(KittiDrives, RefuseWhatTheirFilesCannotSay) {
     return cli::run(
         {"convert", source_, "--layout", GetParam(), "--out", (folder_ / "far").string()});
   };
+  const auto scan = folder_ / "source/sequences/08/velodyne/000003.bin";
+  const std::string bytes = read_file(scan);
+  Frame frame = open_dataset(source_, {}).sequences[0]->read(3);
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    if (label_in_view(frame.points[i], frame, i) % 65536 != kMovingLabel) continue;
+    Point& point = frame.points[i];
+    point = {point.x * 2e4F, point.y * 2e4F, point.z * 2e4F, point.intensity};
+    break;
+  }
+  write_file_atomic(scan, std::string(format_bin(frame.points)));
+  const cli::Answer far_point = convert_again();
+  EXPECT_EQ(far_point.exit_code, 3);
+  EXPECT_THAT(far_point.err,
+              HasSubstr("scan 000003 has a point to be in a box more than 100 km away"));
+  write_file_atomic(scan, bytes);
+
   const auto poses = folder_ / "source/sequences/08/poses.txt";
   std::string rows;
   for (std::size_t k = 0; k < kScans; ++k) {
